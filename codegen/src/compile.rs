@@ -1,7 +1,7 @@
 //! The stages of the generator, in order.
 
 use crate::choice::{Chosen, Missing};
-use crate::derivation::{Underivable, function_name, inventory};
+use crate::derivation::{MotionInput, Selection, Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
@@ -11,6 +11,7 @@ use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Search};
+use overact_core::Function;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.
@@ -73,6 +74,50 @@ fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), Und
     Ok(())
 }
 
+/// The functions that the robot has and the request asks for, and what was chosen.
+fn chosen(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    request: &Request<'_>,
+) -> Result<(Vec<(Function, MotionInput)>, Chosen), Underivable> {
+    let mut offered = inventory(mechanism, selection.joints);
+    offered.retain(|(function, _)| {
+        let is_told = function.columns().is_some() || function.is_of_base_parameters();
+        selection.values.is_none() || !is_told
+    });
+    let chosen = match request.functions {
+        Some(choice) if selection.values.is_some() && choice.columns().is_some() => {
+            return Err(not_offered(vec![Missing::of_known_parameters()]));
+        }
+        Some(choice) => choice
+            .of_robot(mechanism, selection.joints, &offered)
+            .map_err(not_offered)?,
+        None => Chosen::all(&offered),
+    };
+    offered.retain(|&(function, from)| {
+        chosen.functions.contains(&(function, from)) && (request.wanted)(mechanism, function, from)
+    });
+    Ok((offered, chosen))
+}
+
+/// Derives and lowers one function.
+fn compiled(
+    assembler: &Assembler<'_>,
+    request: &Request<'_>,
+    function: Function,
+    from: MotionInput,
+) -> Result<CompiledFunction, Underivable> {
+    let program = assembler.cheapest(function, from)?;
+    let lanes = match request.side_by_side && request.float == Float::F64 {
+        true => selection::beside(assembler, function, from, &program),
+        false => None,
+    };
+    let mechanism = assembler.mechanism;
+    Ok(CompiledFunction::new(
+        mechanism, function, from, program, lanes,
+    ))
+}
+
 /// Selects form and columns, then derives and lowers one function after the other.
 fn derived(
     mechanism: Mechanism,
@@ -96,30 +141,14 @@ fn derived(
         selection: &selection,
         search: &Search::with(effort, &mechanism),
     };
-    let mut offered = inventory(&mechanism, selection.joints);
-    offered.retain(|(function, _)| {
-        let is_told = function.columns().is_some() || function.is_of_base_parameters();
-        selection.values.is_none() || !is_told
-    });
-    let chosen = match request.functions {
-        Some(choice) if selection.values.is_some() && choice.columns().is_some() => {
-            return Err(not_offered(vec![Missing::of_known_parameters()]));
-        }
-        Some(choice) => choice
-            .of_robot(&mechanism, selection.joints, &offered)
-            .map_err(not_offered)?,
-        None => Chosen::all(&offered),
-    };
-    offered.retain(|&(function, from)| {
-        chosen.functions.contains(&(function, from)) && (request.wanted)(&mechanism, function, from)
-    });
+    let (offered, chosen) = chosen(&mechanism, &selection, request)?;
     let done = AtomicUsize::new(0);
     let functions = parallel::map(&offered, |&(function, from)| {
         let name = function_name(function, from, mechanism.is_tree());
         tell(done.load(Ordering::Relaxed), offered.len(), &name);
-        let program = assembler.cheapest(function, from)?;
+        let compiled = compiled(&assembler, request, function, from)?;
         done.fetch_add(1, Ordering::Relaxed);
-        Ok(CompiledFunction::new(&mechanism, function, from, program))
+        Ok(compiled)
     });
     let functions = functions
         .into_iter()

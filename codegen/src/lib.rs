@@ -57,7 +57,7 @@ pub use overact_core::Columns;
 pub use request::{Progress, Request};
 pub use runtime::{NotAPath, Runtime};
 pub use selection::BaseParameter;
-pub use whole::{Iteration, WholeCost};
+pub use whole::{Iteration, SideBySide, WholeCost};
 
 /// Versions of the crates that decide what is generated.
 pub const VERSIONS: [&str; 2] = [env!("CARGO_PKG_VERSION"), overact_core::VERSION];

@@ -2,7 +2,7 @@
 
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::float::Float;
-use crate::lowering::Program;
+use crate::lowering::{Lanes, Program};
 use crate::mechanism::{JointKind, Mechanism, StandardParameter};
 use crate::runtime::Runtime;
 use crate::selection::{self, BaseParameter};
@@ -22,6 +22,8 @@ pub struct CompiledFunction {
     pub from: MotionInput,
     /// The program.
     pub program: Program,
+    /// The same with legs that are alike side by side, where the program is long and that is asked for.
+    pub lanes: Option<Lanes>,
 }
 
 impl CompiledFunction {
@@ -31,12 +33,14 @@ impl CompiledFunction {
         function: Function,
         from: MotionInput,
         program: Program,
+        lanes: Option<Lanes>,
     ) -> Self {
         Self {
             name: function_name(function, from, mechanism.is_tree()),
             computes: function,
             from,
             program,
+            lanes,
         }
     }
 }

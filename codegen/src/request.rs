@@ -47,6 +47,9 @@ pub struct Request<'a> {
     pub parameters: Option<&'a BTreeMap<String, f64>>,
     /// The numbers that generated code computes with.
     pub float: Float,
+    /// Whether Rust is generated, in which legs that are alike may run side by side. Nothing else needs their
+    /// programs.
+    pub side_by_side: bool,
     /// Under which path generated Rust finds the runtime crate, where it is not `::overact`.
     pub runtime: Option<&'a Runtime>,
     /// Is told how far the work is: large robots take minutes.
@@ -62,6 +65,7 @@ impl Default for Request<'_> {
             functions: None,
             parameters: None,
             float: Float::F64,
+            side_by_side: true,
             runtime: None,
             progress: &|_| {},
         }

@@ -36,6 +36,21 @@ pub struct WholeCost {
     pub once: Cost,
     /// What is done in each step of an iteration.
     pub iterations: Vec<Iteration>,
+    /// What Rust does in the place of the function's own program, where legs run side by side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side_by_side: Option<SideBySide>,
+}
+
+/// Operations of legs that run side by side, in the lanes of vectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
+pub struct SideBySide {
+    /// Operations that are done once.
+    pub once: usize,
+    /// Operations of each leg.
+    pub each: usize,
+    /// How many legs there are.
+    pub legs: usize,
 }
 
 /// The iterations' names: those of the functions that have them.
@@ -47,6 +62,7 @@ impl From<Cost> for WholeCost {
         Self {
             once,
             iterations: Vec::new(),
+            side_by_side: None,
         }
     }
 }
@@ -94,6 +110,11 @@ impl RobotModel {
         let mut whole = WholeCost::from(match newton {
             true => Cost::default(),
             false => function.program.cost(),
+        });
+        whole.side_by_side = function.lanes.as_ref().map(|lanes| {
+            let (once, each) = lanes.operations();
+            let legs = lanes.legs.len();
+            SideBySide { once, each, legs }
         });
         let takes_pose = function.program.inputs.iter().any(|i| i.name == "pose");
         if takes_pose && !self.finds_pose(function) {

@@ -85,6 +85,7 @@ impl Handle {
         };
         let request = Request {
             wanted: &wanted,
+            side_by_side: false,
             ..Request::with_effort(Effort::None)
         };
         let compiled = CompiledFile::new(self.robot.source().clone(), &request)?;

@@ -86,6 +86,7 @@ impl Robot {
 pub(crate) fn served() -> Request<'static> {
     Request {
         wanted: &InterpretedRobot::serves,
+        side_by_side: false,
         ..Request::with_effort(Effort::None)
     }
 }

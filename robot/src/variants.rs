@@ -72,6 +72,7 @@ pub(crate) fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
     };
     let request = Request {
         wanted: &wanted,
+        side_by_side: false,
         ..Request::with_effort(Effort::None)
     };
     Some(InterpretedRobot::new(model_with(mechanism, &request).ok()?))

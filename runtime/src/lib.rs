@@ -19,6 +19,7 @@ pub mod float;
 pub mod forward;
 pub mod guard;
 pub mod inverse;
+pub mod lanes;
 pub mod math;
 pub mod model;
 pub mod partition;

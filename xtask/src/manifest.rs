@@ -4,7 +4,7 @@
 //! in a diff which function changed, and whether it takes more operations than before.
 
 use crate::robots::Module;
-use overact_codegen::WholeCost;
+use overact_codegen::{SideBySide, WholeCost};
 use std::fmt::Write as _;
 
 const HEADER: &str = "\
@@ -15,6 +15,8 @@ const HEADER: &str = "\
 # multiplications (with signs, too) and divisions, the square roots, the sine-cosine pairs, and the hash of
 # its text; arc tangents, signs of velocities, guards and negations where there are any. What a function
 # calls is counted in; what it takes for each step of an iteration stands behind `each_step`.
+# Of legs that run side by side in Rust stand behind `side_by_side` the operations that are done once, those of
+# each leg, and how many legs there are.
 # `cargo xtask generated ROBOT` writes a module to target/generated/, to read.
 ";
 
@@ -69,6 +71,12 @@ fn costs(cost: &WholeCost) -> String {
     let steps: Vec<String> = steps.collect();
     if !steps.is_empty() {
         let _ = write!(text, ", each_step = [{}]", steps.join(", "));
+    }
+    if let Some(SideBySide {
+        once, each, legs, ..
+    }) = cost.side_by_side
+    {
+        let _ = write!(text, ", side_by_side = [{once}, {each}, {legs}]");
     }
     text
 }

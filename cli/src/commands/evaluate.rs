@@ -101,6 +101,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let request = Request {
         wanted: &wanted,
+        side_by_side: false,
         ..Request::with_effort(Effort::None)
     };
     let CompiledFile {

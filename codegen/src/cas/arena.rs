@@ -104,6 +104,8 @@ struct Tables {
     constant_ids: ByValue<Vec<u32>>,
     symbols: Vec<Symbol>,
     symbol_ids: HashMap<String, SymbolId>,
+    /// Constants that symbols stand for, and whether it is the negative that they stand for.
+    stands: ByValue<(SymbolId, bool)>,
     directions: Vec<Direction>,
     direction_ids: QuickMap<Direction, u32>,
     sets: placeholders::Sets,
@@ -278,6 +280,10 @@ impl Arena {
     }
 
     pub(crate) fn constant(&self, number: Number) -> Handle {
+        let standing = self.tables.borrow().stands.get(&number.image()).copied();
+        if let Some((symbol, negative)) = standing {
+            return self.intern(Op::Symbol(symbol)).with_sign_of(negative);
+        }
         let negative = number.value() < 0.0;
         let number = if negative { -number } else { number };
         let id = {

@@ -19,33 +19,63 @@ pub struct Written {
 /// Statements and value of a body whose inputs and output are these.
 #[must_use]
 pub fn write(body: &Body, inputs: &[Array], output: &Array, float: Float) -> Written {
-    let writer = Writer { inputs, float };
+    let writer = Writer::new(inputs, float);
+    let constants = constants(body, float);
+    let statements = body.statements.iter().map(|s| writer.statement(s));
+    Written {
+        statements: quote!(#constants #(#statements)*),
+        value: writer.output(&body.output, output),
+    }
+}
+
+/// The named constants of a body.
+pub(super) fn constants(body: &Body, float: Float) -> TokenStream {
     let kind = kind(float);
     let constants = body.constants.iter().map(|constant| {
         let (name, value) = (ident(&constant.name), number(constant.value, float));
         let doc = format!(" {}", constant.expression);
         quote!(#[doc = #doc] const #name: #kind = #value;)
     });
-    let statements = body.statements.iter().map(|s| writer.statement(s));
-    Written {
-        statements: quote!(#(#constants)* #(#statements)*),
-        value: writer.output(&body.output, output),
-    }
+    quote!(#(#constants)*)
 }
 
-fn ident(name: &str) -> Ident {
+pub(super) fn ident(name: &str) -> Ident {
     Ident::new(name, Span::call_site())
 }
 
 /// Writes what a body is made of.
-struct Writer<'a> {
+pub(super) struct Writer<'a> {
     inputs: &'a [Array],
     float: Float,
+    /// The module of the functions that are called.
+    math: TokenStream,
 }
 
-impl Writer<'_> {
-    fn statement(&self, statement: &Statement) -> TokenStream {
-        let math = self.math();
+impl<'a> Writer<'a> {
+    /// Of a body with these inputs.
+    pub(super) fn new(inputs: &'a [Array], float: Float) -> Self {
+        let math = match float {
+            Float::F64 => quote!(::overact::math),
+            Float::F32 => quote!(::overact::math::single),
+        };
+        Self {
+            inputs,
+            float,
+            math,
+        }
+    }
+
+    /// Of what is computed in lanes.
+    pub(super) fn of_lanes(inputs: &'a [Array]) -> Self {
+        Self {
+            inputs,
+            float: Float::F64,
+            math: quote!(::overact::lanes),
+        }
+    }
+
+    pub(super) fn statement(&self, statement: &Statement) -> TokenStream {
+        let math = &self.math;
         match statement {
             Statement::Assign { name, value } => {
                 let (name, value) = (ident(name), self.tokens(value));
@@ -61,14 +91,6 @@ impl Writer<'_> {
                 quote!(let #names = #math::sin_cos(#angle);)
             }
             Statement::Guard { value, condition } => self.guard(value, condition),
-        }
-    }
-
-    /// The module of the functions that are called.
-    fn math(&self) -> TokenStream {
-        match self.float {
-            Float::F64 => quote!(::overact::math),
-            Float::F32 => quote!(::overact::math::single),
         }
     }
 
@@ -110,7 +132,7 @@ impl Writer<'_> {
         }
     }
 
-    fn tokens(&self, expression: &Expression) -> TokenStream {
+    pub(super) fn tokens(&self, expression: &Expression) -> TokenStream {
         match expression {
             Expression::Number(value) => number(*value, self.float),
             Expression::Constant { name, negative } => {
@@ -151,7 +173,7 @@ impl Writer<'_> {
 
     fn call(&self, function: Call, operands: &[Expression]) -> TokenStream {
         let operands = operands.iter().map(|operand| self.tokens(operand));
-        let math = self.math();
+        let math = &self.math;
         match function {
             Call::Sqrt => quote!(#math::sqrt(#(#operands),*)),
             Call::Sign => quote!(#math::sign(#(#operands),*)),

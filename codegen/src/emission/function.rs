@@ -34,6 +34,16 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             names: Vec::new(),
         };
     }
+    if let (None, Some(lanes)) = (outline.twin, &function.lanes) {
+        let written = super::lanes::write(model, function, lanes);
+        let value = written.value;
+        let value = quote!(::core::result::Result::Ok(#value));
+        return Item {
+            tokens: around(model, function, &outline, &written.statements, &value),
+            sections: written.sections,
+            names: written.names,
+        };
+    }
     let (mut sections, mut names) = (Vec::new(), Vec::new());
     let (statements, value) = match outline.twin {
         Some(twin) => (TokenStream::new(), call(twin)),

@@ -16,6 +16,7 @@ mod constants;
 mod expression;
 mod function;
 mod inverse;
+mod lanes;
 mod layout;
 mod model_impl;
 mod runtime;

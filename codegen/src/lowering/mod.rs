@@ -18,6 +18,7 @@
 
 mod dag;
 mod divisors;
+mod lanes;
 mod limits;
 mod passes;
 mod program;
@@ -26,6 +27,8 @@ mod schedule;
 mod tests;
 
 pub use dag::rays::States;
+pub(crate) use lanes::fold;
+pub use lanes::{Column, Lanes};
 pub use limits::SearchLimits;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 

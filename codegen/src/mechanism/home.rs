@@ -44,6 +44,7 @@ impl Home {
     #[must_use]
     pub fn value<'a>(&self, arena: &'a Arena, expr: Expr<'a>) -> f64 {
         let known = |symbol| self.input(arena.input_element(symbol)?);
+        let known = |symbol| known(symbol).or_else(|| arena.constant_of(symbol));
         expr.evaluate(&|symbol| known(symbol).unwrap_or(0.1))
     }
 }

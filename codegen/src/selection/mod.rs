@@ -7,13 +7,14 @@
 //! Every other column is a constant combination of them, and is written as one where that takes fewer
 //! operations ([`combine`]). All choices go by one measure: the operations of the program that
 //! [`assemble`] makes of a function, searched as far as [`search`] says. Where the parameters are known,
-//! [`values`] says which numbers stand for them.
+//! [`values`] says which numbers stand for them. Legs that are alike may run side by side, as [`lanes`] says.
 
 mod assemble;
 mod base;
 mod columns;
 mod combine;
 mod formulation;
+mod lanes;
 mod regressor;
 mod search;
 mod values;
@@ -21,6 +22,7 @@ mod values;
 pub use assemble::Assembler;
 pub use base::BaseParameter;
 pub use columns::sample;
+pub(crate) use lanes::beside;
 pub use search::Search;
 pub(crate) use values::regrouped;
 

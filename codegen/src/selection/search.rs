@@ -71,6 +71,18 @@ impl Search {
         function: Function,
         derived: &Derived<'a>,
     ) -> Result<Program, InternalError> {
+        self.lower_with(arena, mechanism, function, derived, &|_| None)
+    }
+
+    /// The program of a derived function with inputs that stand for constants, of these values.
+    pub(super) fn lower_with<'a>(
+        &self,
+        arena: &'a Arena,
+        mechanism: &Mechanism,
+        function: Function,
+        derived: &Derived<'a>,
+        standing: &dyn Fn(InputElement) -> Option<f64>,
+    ) -> Result<Program, InternalError> {
         let limits = self.limits_of(function);
         let compared = if limits.compares_regular_states {
             &self.states[..]
@@ -85,10 +97,11 @@ impl Search {
             divisors: guards(&derived.divisors),
         };
         let states = States {
-            home: &|element| mechanism.home.input(element),
+            home: &|element| mechanism.home.input(element).or_else(|| standing(element)),
             groups: &compared.iter().map(Vec::len).collect::<Vec<_>>(),
             regular: &|group, number, element| {
-                at_state(mechanism, &compared[group][number], element)
+                let state = &compared[group][number];
+                at_state(mechanism, state, element).or_else(|| standing(element))
             },
         };
         lower(arena, &function, &limits, &states)

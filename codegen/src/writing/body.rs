@@ -45,12 +45,24 @@ impl Body {
     /// `reserved` are not given.
     #[must_use]
     pub fn write(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
+        Self::write_with(program, labels, reserved, &|_| false)
+    }
+
+    /// The same with a name for each step that is `kept`, however short.
+    #[must_use]
+    pub fn write_with(
+        program: &Program,
+        labels: &Labels,
+        reserved: &dyn Fn(&str) -> bool,
+        kept: &dyn Fn(usize) -> bool,
+    ) -> Self {
         let count = program.steps.len();
         let mut writer = Writer {
             program,
             naming: Names::new(program, labels),
             labels,
             reserved,
+            kept,
             constants: BTreeMap::new(),
             sections: Vec::new(),
             names: vec![None; count],
@@ -90,6 +102,7 @@ struct Writer<'p> {
     naming: Names<'p>,
     labels: &'p Labels,
     reserved: &'p dyn Fn(&str) -> bool,
+    kept: &'p dyn Fn(usize) -> bool,
     constants: BTreeMap<String, Constant>,
     sections: Vec<(String, String)>,
     names: Vec<Option<String>>,
@@ -146,7 +159,7 @@ impl Writer<'_> {
             return self.sine_and_cosine(at, angle);
         }
         let text = self.text(self.program.steps[at].operation);
-        let named = self.program.steps[at].name.is_some();
+        let named = self.program.steps[at].name.is_some() || (self.kept)(at);
         let guards = &self.program.guards;
         let guarded = guards.iter().any(|g| g.operand == Operand::Step(at));
         if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {

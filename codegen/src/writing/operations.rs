@@ -2,12 +2,17 @@
 
 use crate::lowering::Cost;
 use crate::model::RobotModel;
-use crate::whole::WholeCost;
+use crate::whole::{SideBySide, WholeCost};
 
 /// The lines of a function.
 #[must_use]
 pub fn of_function(cost: &WholeCost) -> Vec<String> {
     let mut lines = vec![format!(" {}.", cost.once)];
+    if let Some(SideBySide { once, each, legs }) = cost.side_by_side {
+        lines.push(format!(
+            " That is the straight program, which interpreted robots and other languages have. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+        ));
+    }
     for iteration in &cost.iterations {
         let (function, step) = (iteration.function, iteration.step);
         let runs = match iteration.runs {
@@ -31,7 +36,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
     let mut lines = vec![
         " # Operations".to_owned(),
         String::new(),
-        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.".to_owned(),
+        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps, and what legs side by side take behind that of straight code.".to_owned(),
         String::new(),
         " | function | once | each step |".to_owned(),
         " |---|---|---|".to_owned(),
@@ -40,13 +45,22 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
         let cost = model.cost(function);
         let steps: Vec<String> = cost.iterations.iter().map(|one| short(&one.step)).collect();
         lines.push(format!(
-            " | `{}` | {} | {} |",
+            " | `{}` | {}{} | {} |",
             function.name,
             short(&cost.once),
+            lanes(&cost),
             steps.join("; ")
         ));
     }
     lines
+}
+
+/// `; in lanes 237 + 6 x 419`, of legs side by side.
+fn lanes(cost: &WholeCost) -> String {
+    let told = cost
+        .side_by_side
+        .map(|SideBySide { once, each, legs }| format!("; in lanes {once} + {legs} x {each}"));
+    told.unwrap_or_default()
 }
 
 /// `362, 4 √, 1 sc, 8 gd`.

@@ -155,6 +155,19 @@ fn functions(document: &Inspection) -> String {
     }
     columns(&rows, &[true])
         + "op: + - * and /, products with a sign among them; what a function calls is counted in.\n"
+        + &side_by_side(document)
+}
+
+/// What functions take in Rust where legs run side by side.
+fn side_by_side(document: &Inspection) -> String {
+    let told = document.functions.iter().filter_map(|function| {
+        let cost = function.cost.side_by_side?;
+        Some(format!(
+            "{} in Rust: {} legs side by side, {} operations once and {} of each leg.\n",
+            function.function, cost.legs, cost.once, cost.each
+        ))
+    });
+    told.collect()
 }
 
 /// What a function that calls an iteration takes for each of its steps.

@@ -3,6 +3,7 @@
 use super::super::direction::{Direction, SymbolId};
 use super::super::expr::Expr;
 use super::super::field::{Element, mix, mix_name};
+use super::super::number::Number;
 use super::super::sample::Sample;
 use super::{Arena, Fingerprint, Op, POINTS};
 
@@ -125,6 +126,28 @@ impl Arena {
         tables.symbols.push(Symbol::new(name, kind));
         tables.symbol_ids.insert(name.to_owned(), id);
         id
+    }
+
+    /// Lets an element of an input array stand for a constant wherever the constant or its negative comes up from
+    /// now on: the constant is not folded into others, and keeps its relations to them, such as c² + s² = 1.
+    pub(crate) fn stand_for(&self, number: Number, array: &'static str, index: usize) {
+        let symbol = self.input_symbol(array, index);
+        let mut tables = self.tables.borrow_mut();
+        let own = &mut tables.symbols[symbol.0 as usize];
+        own.fingerprint = Fingerprint::number(number);
+        own.sample = number.value();
+        tables.stands.insert(number.image(), (symbol, false));
+        tables.stands.insert((-number).image(), (symbol, true));
+    }
+
+    /// The value of the constant that a symbol stands for, if it stands for one.
+    pub(crate) fn constant_of(&self, symbol: SymbolId) -> Option<f64> {
+        let tables = self.tables.borrow();
+        let own = &tables.symbols[symbol.0 as usize];
+        let stands = tables.stands.get(&own.fingerprint.value());
+        stands
+            .is_some_and(|&(id, _)| id == symbol)
+            .then_some(own.sample)
     }
 
     /// The value of a symbol as an expression.
