@@ -16,9 +16,13 @@ class Count:
     arc_tangents: int = 0
     signs: int = 0
     negations: int = 0
+    # Operations of legs that run side by side, where they are done in the place of the straight program's.
+    side_by_side: int = 0
 
     @property
     def operations(self):
+        if self.side_by_side:
+            return self.side_by_side
         return self.additions + self.multiplications + self.divisions
 
     def add(self, kind, times=1):
@@ -28,4 +32,7 @@ class Count:
     def from_json(cls, function):
         """Counts of overact's own function, as `overact inspect --json` prints them."""
         keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs"]
-        return cls(**{key: function[key] for key in [*keys, "arc_tangents", "signs"]})
+        counts = {key: function[key] for key in [*keys, "arc_tangents", "signs"]}
+        if beside := function.get("side_by_side"):
+            counts["side_by_side"] = beside["once"] + beside["legs"] * beside["each"]
+        return cls(**counts)
