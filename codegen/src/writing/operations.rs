@@ -36,7 +36,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
     let mut lines = vec![
         " # Operations".to_owned(),
         String::new(),
-        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps, and what legs side by side take behind that of straight code.".to_owned(),
+        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.".to_owned(),
         String::new(),
         " | function | once | each step |".to_owned(),
         " |---|---|---|".to_owned(),
@@ -55,7 +55,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
     lines
 }
 
-/// `; in lanes 237 + 6 x 419`, of legs side by side.
+/// `; in lanes of vectors 237 + 6 x 419`, of legs side by side.
 fn lanes(cost: &WholeCost) -> String {
     let told = cost
         .side_by_side

@@ -6,6 +6,7 @@ mod cases;
 mod damage;
 mod digits;
 mod dominators;
+mod lanes;
 mod language;
 mod listing;
 mod properties;
