@@ -122,32 +122,60 @@ impl<'a> Forward<'a> {
             .chain(anchors.iter().map(|anchor| *anchor as f64))
             .collect();
         let mut poses = Vec::with_capacity(samples * size);
+        let mut between = Between::default();
         for (interval, &anchor) in anchors.iter().enumerate() {
             let first = interval
                 .saturating_sub(1)
                 .min(found.len().saturating_sub(4));
             let around = first..(first + 4).min(found.len());
-            for sample in poses.len() / size..=anchor {
-                if sample == anchor {
-                    poses.extend_from_slice(&found[interval + 1]);
-                } else if is_straight {
+            let start = poses.len() / size;
+            if is_straight {
+                between.prepare(&places[around.clone()], start as f64, anchor - start);
+                for weights in between.weights.chunks_exact(around.len()) {
                     let here = poses.len();
                     poses.resize(here + size, 0.0);
-                    for own in around.clone() {
-                        let weight = lagrange(&places[around.clone()], own - first, sample as f64);
-                        let to = poses[here..].iter_mut().zip(&found[own]);
+                    for (weight, own) in weights.iter().zip(&found[around.clone()]) {
+                        let to = poses[here..].iter_mut().zip(own);
                         to.for_each(|(to, from)| *to += weight * from);
                     }
-                } else {
-                    poses.extend_from_slice(&found[interval]);
                 }
+            } else {
+                (start..anchor).for_each(|_| poses.extend_from_slice(&found[interval]));
             }
+            poses.extend_from_slice(&found[interval + 1]);
         }
         poses
             .par_chunks_mut(TOGETHER * size)
             .zip(positions.par_chunks(TOGETHER * n))
             .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
         Some(poses)
+    }
+}
+
+/// Weights of anchors at the samples of an interval between two of them.
+#[derive(Default)]
+struct Between {
+    /// The anchors, seen from the first sample.
+    places: Vec<f64>,
+    samples: usize,
+    /// For each sample the weight of each anchor.
+    weights: Vec<f64>,
+}
+
+impl Between {
+    /// Finds them, unless they are those of the interval before, as those of intervals of one length are.
+    fn prepare(&mut self, places: &[f64], first: f64, samples: usize) {
+        let seen = || places.iter().map(|place| place - first);
+        if self.samples == samples && seen().eq(self.places.iter().copied()) {
+            return;
+        }
+        self.places = seen().collect();
+        self.samples = samples;
+        self.weights.clear();
+        for sample in 0..samples {
+            let weight = |own: usize| lagrange(&self.places, own, sample as f64);
+            self.weights.extend((0..self.places.len()).map(weight));
+        }
     }
 }
 
@@ -159,14 +187,15 @@ fn lagrange(places: &[f64], own: usize, x: f64) -> f64 {
         .product()
 }
 
-/// Moves poses until none moves any more: Gauss-Newton for all samples at once, with the tolerance of
-/// [`overact::forward::gauss_newton`]. `None` where a sample does not converge.
+/// Moves poses until none moves any more, or none will: Gauss-Newton for all samples at once, which ends as
+/// [`overact::forward::gauss_newton`] does. `None` where a sample does not converge.
 fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
     let samples = positions.len() / n;
     let mut reached = vec![0.0; samples * n];
     let mut jacobians = vec![0.0; samples * n * r];
+    let mut before = 0.0;
     for _ in 0..STEPS {
         model
             .evaluate(Function::ActuatorPositions, &[poses], &mut reached)
@@ -187,9 +216,12 @@ fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()>
             6 => displaced(model, &differences, poses, ([0.0; 36], [0.0; 6])),
             _ => displaced(model, &differences, poses, (vec![0.0; r * r], vec![0.0; r])),
         };
-        if largest? < TOLERANCE {
+        let largest = largest?;
+        // The next step is largest²/before at most, of whichever sample.
+        if largest < TOLERANCE || largest * largest < 0.1 * TOLERANCE * before {
             return Some(());
         }
+        before = largest;
     }
     None
 }
