@@ -47,6 +47,10 @@ const NO_COMMAND: ErrorKind = ErrorKind::DisplayHelpOnMissingArgumentOrSubcomman
 #[must_use]
 pub fn run() -> ExitCode {
     signals::watch();
+    // The thread that waits for parallel work takes part in it: else each piece is handed to another thread, which
+    // has to be woken, while this one sleeps. Where there is a pool already, there is nothing to be done.
+    let pool = rayon::ThreadPoolBuilder::new().use_current_thread();
+    let _ = pool.build_global();
     ExitCode::from(run_with(std::env::args_os().collect()))
 }
 

@@ -287,6 +287,12 @@ impl InterpretedRobot {
         let sizes = &self.names.sizes;
         let kinds = function.inputs().iter().zip(inputs);
         let of = |(kind, values): (&Input, &&[f64])| {
+            // Seldom one is not: the first is looked for where there is one, and all are asked without a branch.
+            let exponent = f64::INFINITY.to_bits();
+            let is_bad = |value: &f64| value.to_bits() & exponent == exponent;
+            if !values.iter().fold(false, |any, value| any | is_bad(value)) {
+                return None;
+            }
             let at = values.iter().position(|value| !value.is_finite())?;
             let row = sizes.of(*kind);
             let input = self.called(*kind);

@@ -2,10 +2,11 @@
 //!
 //! The code is plain loops over arrays; it is compiled once for every width of vectors and chosen at run
 //! time. No pass fuses a multiplication with an addition into one rounding, but for the polynomials of
-//! sines and cosines, which take most of the arithmetic: AVX2 and AVX-512 give the same numbers to the
-//! last digit.
+//! sines, cosines and angles of directions, which take most of the arithmetic: AVX2 and AVX-512 give the same
+//! numbers to the last digit.
 
 use super::BLOCK;
+use super::direction::{angles, are_usual};
 use super::passes::{Worker, work};
 use super::plan::{Pass, Slot};
 use super::trigonometry::{are_small, sines_and_cosines};
@@ -68,6 +69,17 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
             let angle = angle.get();
             sine.set(angle.sin());
             cosine.set(angle.cos());
+        }
+    }
+
+    /// Angles of directions by the library.
+    #[cold]
+    #[inline(never)]
+    fn unusual_directions(&self, at: &Pass) {
+        let [y, x, angles] =
+            [at.operands[0], at.operands[1], at.results[0]].map(|slot| &self.blocks[slot as usize]);
+        for ((y, x), angle) in y.iter().zip(x).zip(angles) {
+            angle.set(y.get().atan2(x.get()));
         }
     }
 }
@@ -146,6 +158,24 @@ impl<const FUSED: bool> Worker for Run<'_, FUSED> {
             let (sine, cosine) = sines_and_cosines::<WIDTH, FUSED>(load(&angles[part]));
             store(&sines[part], sine);
             store(&cosines[part], cosine);
+        }
+    }
+
+    #[inline(always)]
+    fn directions(&self, at: &Pass) {
+        let [y, x, found] =
+            [at.operands[0], at.operands[1], at.results[0]].map(|slot| self.block(slot));
+        // Samples behind the last one may hold anything; the library has an answer to that, too.
+        let mut usual = true;
+        for (y, x) in y.iter().zip(x) {
+            usual &= are_usual(&load(y), &load(x));
+        }
+        if !usual {
+            return self.unusual_directions(at);
+        }
+        for part in 0..BLOCK / WIDTH {
+            let angles = angles::<WIDTH, FUSED>(load(&y[part]), load(&x[part]));
+            store(&found[part], angles);
         }
     }
 }

@@ -7,6 +7,7 @@
 //! computed ([`Evaluator::evaluate_numbers`]), or row-major too ([`Evaluator::evaluate`]), which takes
 //! several times as long: a model has hundreds of numbers, and each has to be moved.
 
+mod direction;
 mod fuse;
 mod guards;
 mod inputs;

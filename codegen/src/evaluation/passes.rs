@@ -17,6 +17,9 @@ pub(super) trait Worker {
 
     /// Sine and cosine of the operand.
     fn angles(&self, at: &Pass);
+
+    /// The angle of the direction that two operands are the sine and the cosine of, times a length.
+    fn directions(&self, at: &Pass);
 }
 
 /// The body for every operation in place of [`Arithmetic`] `$o`, `$f` being its function.
@@ -89,6 +92,6 @@ pub(super) fn work(at: &Pass, worker: &impl Worker) {
     when!(at, Kind::ThreeSigned, worker.three(at, |a, b| signed(b, a)));
     when!(at, Kind::TwoProducts, worker.two(at, |a, b| a * b));
     when!(at, Kind::ThreeProducts, worker.three(at, |a, b| a * b));
-    when!(at, Kind::Direction, worker.each(at, |[a, b]| a.atan2(b)));
+    when!(at, Kind::Direction, worker.directions(at));
     when!(at, Kind::Angle, worker.angles(at));
 }

@@ -109,6 +109,11 @@ impl Worker for Scalars<'_> {
         self.set(at.results[0], sine);
         self.set(at.results[1], cosine);
     }
+
+    #[inline(always)]
+    fn directions(&self, at: &Pass) {
+        self.each(at, |[y, x]| y.atan2(x));
+    }
 }
 
 /// Evaluates a program at a single sample, once.

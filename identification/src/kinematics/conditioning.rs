@@ -8,7 +8,7 @@
 use overact::{Function, Model};
 use pulp::NullaryFnOnce;
 
-use super::dense::{LANES, Lanes, eliminated, invert, orthogonalised};
+use super::dense::{LANES, Lanes, eliminated, invert, lanes, orthogonalised};
 use crate::widest::widest;
 
 /// Inverse norms of the columns of J_p^inv at home, which make metres and radians comparable; ones
@@ -102,18 +102,6 @@ impl KeptActuators {
         });
         (inverses, singular)
     }
-}
-
-/// Samples side by side, filled up with the last one.
-#[inline(always)]
-fn lanes(rows: &[f64], size: usize, of: impl Fn(&[f64]) -> f64) -> Lanes {
-    let last = rows.len() / size - 1;
-    let mut values = [0.0; LANES];
-    for (lane, value) in values.iter_mut().enumerate() {
-        let first = lane.min(last) * size;
-        *value = of(&rows[first..first + size]);
-    }
-    values
 }
 
 /// The conditions of some actuators along the way.

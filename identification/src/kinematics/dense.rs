@@ -11,8 +11,63 @@ pub(super) type Lanes = [f64; LANES];
 /// Sweeps after which the singular values of a small matrix have converged to rounding.
 const SWEEPS: usize = 30;
 
-/// Cosine of the angle between two columns that count as orthogonal.
-const ORTHOGONAL: f64 = 1e-15;
+/// Cosine of the angle between two columns that count as orthogonal: by so much of themselves, at most, the singular
+/// values are wrong. A sweep more would be needed for some of the last digits, for rounding is near.
+const ORTHOGONAL: f64 = 1e-13;
+
+/// Samples side by side, of rows of `size` numbers, filled up with the last one.
+#[inline(always)]
+pub(super) fn lanes(rows: &[f64], size: usize, of: impl Fn(&[f64]) -> f64) -> Lanes {
+    let last = rows.len() / size - 1;
+    let mut values = [0.0; LANES];
+    for (lane, value) in values.iter_mut().enumerate() {
+        let first = lane.min(last) * size;
+        *value = of(&rows[first..first + size]);
+    }
+    values
+}
+
+/// Solves systems with symmetric positive definite matrices, of which the upper triangle is read, in place, as
+/// [`overact::forward::solve_positive_definite`] does; `false` where a pivot is not above this part of the largest
+/// entry of the diagonal.
+#[inline(always)]
+pub(super) fn solved(matrix: &mut [Lanes], vector: &mut [Lanes], least: f64) -> [bool; LANES] {
+    let r = vector.len();
+    let (mut largest, mut is_regular) = ([0.0; LANES], [true; LANES]);
+    for k in 0..r {
+        for lane in 0..LANES {
+            largest[lane] = f64::max(largest[lane], matrix[k * r + k][lane]);
+        }
+    }
+    for k in 0..r {
+        let (pivot, known) = (matrix[k * r + k], vector[k]);
+        for lane in 0..LANES {
+            is_regular[lane] &= pivot[lane] > least * largest[lane];
+        }
+        for i in k + 1..r {
+            let mut factor = [0.0; LANES];
+            for lane in 0..LANES {
+                factor[lane] = matrix[k * r + i][lane] / pivot[lane];
+                vector[i][lane] -= factor[lane] * known[lane];
+            }
+            for j in i..r {
+                for lane in 0..LANES {
+                    matrix[i * r + j][lane] -= factor[lane] * matrix[k * r + j][lane];
+                }
+            }
+        }
+    }
+    for k in (0..r).rev() {
+        for lane in 0..LANES {
+            let mut rest = 0.0;
+            for j in k + 1..r {
+                rest += matrix[k * r + j][lane] * vector[j][lane];
+            }
+            vector[k][lane] = (vector[k][lane] - rest) / matrix[k * r + k][lane];
+        }
+    }
+    is_regular
+}
 
 /// Ratio of the largest to the smallest singular value of a matrix of columns of `n` values, by
 /// one-sided Jacobi rotations, which make the columns orthogonal.

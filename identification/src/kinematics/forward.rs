@@ -6,15 +6,12 @@
 //! together: a model evaluates many samples at once much faster than one by one. What does not
 //! converge that way is solved sample by sample, which also tells where a run leaves the workspace.
 
-use overact::{
-    Function, Model,
-    forward::{STEPS, TOLERANCE, solve_positive_definite},
-    math::wrap_angle,
-};
+use overact::{Function, Model, math::wrap_angle};
 use rayon::prelude::*;
 
 use super::conditioning::couples;
 use super::motion::outside;
+use super::settling::settle;
 use crate::{data::Log, error::Error};
 
 /// Steps in which the first sample is approached from the home pose, should it be far from it.
@@ -122,26 +119,27 @@ impl<'a> Forward<'a> {
             .chain(anchors.iter().map(|anchor| *anchor as f64))
             .collect();
         let mut poses = Vec::with_capacity(samples * size);
+        let mut between = Between::default();
         for (interval, &anchor) in anchors.iter().enumerate() {
             let first = interval
                 .saturating_sub(1)
                 .min(found.len().saturating_sub(4));
             let around = first..(first + 4).min(found.len());
-            for sample in poses.len() / size..=anchor {
-                if sample == anchor {
-                    poses.extend_from_slice(&found[interval + 1]);
-                } else if is_straight {
+            let start = poses.len() / size;
+            if is_straight {
+                between.prepare(&places[around.clone()], start as f64, anchor - start);
+                for weights in between.weights.chunks_exact(around.len()) {
                     let here = poses.len();
                     poses.resize(here + size, 0.0);
-                    for own in around.clone() {
-                        let weight = lagrange(&places[around.clone()], own - first, sample as f64);
-                        let to = poses[here..].iter_mut().zip(&found[own]);
+                    for (weight, own) in weights.iter().zip(&found[around.clone()]) {
+                        let to = poses[here..].iter_mut().zip(own);
                         to.for_each(|(to, from)| *to += weight * from);
                     }
-                } else {
-                    poses.extend_from_slice(&found[interval]);
                 }
+            } else {
+                (start..anchor).for_each(|_| poses.extend_from_slice(&found[interval]));
             }
+            poses.extend_from_slice(&found[interval + 1]);
         }
         poses
             .par_chunks_mut(TOGETHER * size)
@@ -151,99 +149,39 @@ impl<'a> Forward<'a> {
     }
 }
 
+/// Weights of anchors at the samples of an interval between two of them.
+#[derive(Default)]
+struct Between {
+    /// The anchors, seen from the first sample.
+    places: Vec<f64>,
+    samples: usize,
+    /// For each sample the weight of each anchor.
+    weights: Vec<f64>,
+}
+
+impl Between {
+    /// Finds them, unless they are those of the interval before, as those of intervals of one length are.
+    fn prepare(&mut self, places: &[f64], first: f64, samples: usize) {
+        let seen = || places.iter().map(|place| place - first);
+        if self.samples == samples && seen().eq(self.places.iter().copied()) {
+            return;
+        }
+        self.places = seen().collect();
+        self.samples = samples;
+        self.weights.clear();
+        for sample in 0..samples {
+            let weight = |own: usize| lagrange(&self.places, own, sample as f64);
+            self.weights.extend((0..self.places.len()).map(weight));
+        }
+    }
+}
+
 /// The weight of place number `own` in the polynomial through some places, at `x`.
 fn lagrange(places: &[f64], own: usize, x: f64) -> f64 {
     let others = places.iter().enumerate().filter(|(place, _)| *place != own);
     others
         .map(|(_, other)| (x - other) / (places[own] - other))
         .product()
-}
-
-/// Moves poses until none moves any more: Gauss-Newton for all samples at once, with the tolerance of
-/// [`overact::forward::gauss_newton`]. `None` where a sample does not converge.
-fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
-    let info = model.info();
-    let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let samples = positions.len() / n;
-    let mut reached = vec![0.0; samples * n];
-    let mut jacobians = vec![0.0; samples * n * r];
-    for _ in 0..STEPS {
-        model
-            .evaluate(Function::ActuatorPositions, &[poses], &mut reached)
-            .ok()?;
-        model
-            .evaluate(Function::InverseJacobian, &[poses], &mut jacobians)
-            .ok()?;
-        let differences = Differences {
-            measured: positions,
-            reached: &reached,
-            is_revolute: info.actuator_is_revolute,
-            jacobians: &jacobians,
-        };
-        // Loops of a few turns are unrolled where their number is known.
-        let largest = match r {
-            2 => displaced(model, &differences, poses, ([0.0; 4], [0.0; 2])),
-            3 => displaced(model, &differences, poses, ([0.0; 9], [0.0; 3])),
-            6 => displaced(model, &differences, poses, ([0.0; 36], [0.0; 6])),
-            _ => displaced(model, &differences, poses, (vec![0.0; r * r], vec![0.0; r])),
-        };
-        if largest? < TOLERANCE {
-            return Some(());
-        }
-    }
-    None
-}
-
-/// How far samples are from the measured positions, sample by sample.
-struct Differences<'a> {
-    measured: &'a [f64],
-    reached: &'a [f64],
-    is_revolute: &'a [bool],
-    /// J_p^inv.
-    jacobians: &'a [f64],
-}
-
-/// Does a step of Gauss-Newton at each sample, in memory for the normal matrix and the step; gives the largest one,
-/// or `None` where there is none.
-#[inline(always)]
-fn displaced(
-    model: &dyn Model,
-    differences: &Differences<'_>,
-    poses: &mut [f64],
-    (mut normal, mut step): (impl AsMut<[f64]>, impl AsMut<[f64]>),
-) -> Option<f64> {
-    let (normal, step) = (normal.as_mut(), step.as_mut());
-    let (n, r) = (differences.is_revolute.len(), step.len());
-    let size = poses.len() / (differences.measured.len() / n);
-    let measured = differences.measured.chunks_exact(n);
-    let rows = measured.zip(differences.reached.chunks_exact(n));
-    let samples = rows.zip(differences.jacobians.chunks_exact(n * r));
-    let mut largest = 0.0_f64;
-    for (pose, ((measured, reached), jacobian)) in poses.chunks_exact_mut(size).zip(samples) {
-        normal.fill(0.0);
-        step.fill(0.0);
-        let actuators = measured.iter().zip(reached).zip(differences.is_revolute);
-        for (row, ((measured, reached), is_revolute)) in jacobian.chunks_exact(r).zip(actuators) {
-            let mut difference = measured - reached;
-            if *is_revolute {
-                difference = wrap_angle(difference);
-            }
-            // Of the normal matrix the upper triangle is read.
-            for (k, normal) in normal.chunks_exact_mut(r).enumerate() {
-                let sums = normal.iter_mut().zip(row).skip(k);
-                sums.for_each(|(sum, b)| *sum += row[k] * b);
-            }
-            let sums = step.iter_mut().zip(row);
-            sums.for_each(|(sum, a)| *sum += a * difference);
-        }
-        solve_positive_definite(normal, step).ok()?;
-        model.displace(pose, step);
-        largest = step.iter().fold(largest, |m, s| m.max(s.abs()));
-        if !step.iter().all(|s| s.is_finite()) {
-            return None;
-        }
-    }
-    Some(largest)
 }
 
 /// Walks from the home pose towards the first sample in small steps, so that its assembly mode is

@@ -12,6 +12,7 @@ pub(crate) mod distribution;
 mod forward;
 mod known;
 mod motion;
+mod settling;
 mod stream;
 
 use overact::Code;

@@ -134,11 +134,19 @@ impl<'a> Stream<'a> {
             self.velocities[(before - self.start) * n..(behind - self.start) * n].to_vec()
         } else {
             let (run, own) = ((n, last), before..behind);
-            let steps = central_differences(&self.positions, self.start, own, run, self.reach);
-            steps.map(|step| step * self.frequency).collect()
+            central_differences(&self.positions, self.start, own, run, self.reach)
         };
-        let accelerations = central_differences(&around, before, first..end, (n, last), self.reach);
-        let accelerations = accelerations.map(|step| step * self.frequency).collect();
+        let per_second = |mut steps: Vec<f64>| {
+            steps.iter_mut().for_each(|step| *step *= self.frequency);
+            steps
+        };
+        let around = match self.velocity_filter.is_some() {
+            true => around,
+            false => per_second(around),
+        };
+        let run = (n, last);
+        let accelerations = central_differences(&around, before, first..end, run, self.reach);
+        let accelerations = per_second(accelerations);
         let inside = |values: &[f64], start: usize| -> Vec<f64> {
             values[(first - start) * n..(end - start) * n].to_vec()
         };

@@ -1,8 +1,6 @@
 //! What is suspicious in the raw numbers of a run, told while it is gone through: clipped torques,
 //! encoders that are stuck, samples that are lost, a robot that stands still.
 
-use std::collections::VecDeque;
-
 use super::{
     clipping::clipping,
     marks::{Marks, Shared},
@@ -57,7 +55,7 @@ pub(crate) struct Monitor {
     /// Noise of positions and of torques.
     roughness: [Roughness; 2],
     /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
-    recent: VecDeque<Vec<f64>>,
+    recent: Vec<f64>,
     /// By what the run is known again.
     marks: Marks,
 }
@@ -108,7 +106,7 @@ impl Monitor {
             torques: vec![[Extreme::default(); 2]; actuators],
             means: Means::new(actuators, frequency),
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
-            recent: VecDeque::new(),
+            recent: Vec::new(),
             marks: Marks::default(),
         }
     }
@@ -116,27 +114,35 @@ impl Monitor {
     /// Takes the next samples.
     pub(crate) fn take(&mut self, samples: &Samples) {
         let n = self.positions.len();
-        let rows = samples.positions.chunks_exact(n);
-        for (positions, torques) in rows.zip(samples.torques.chunks_exact(n)) {
-            for (position, actuator) in self.positions.iter_mut().zip(0..) {
-                position.take(actuator, self.samples, positions, &self.recent);
+        // A loop for each thing that is watched: short ones let the processor be at several samples at once.
+        let mut rows = std::mem::take(&mut self.recent);
+        let known = rows.len() / n;
+        rows.extend_from_slice(&samples.positions);
+        let all = rows.len() / n;
+        for (position, actuator) in self.positions.iter_mut().zip(0..) {
+            for row in known..all {
+                let first = row.saturating_sub(SPEED_SAMPLES + 1);
+                let (before, own) = rows[first * n..(row + 1) * n].split_at((row - first) * n);
+                position.take(actuator, self.samples + row - known, own, before);
             }
+        }
+        rows.drain(..all.saturating_sub(SPEED_SAMPLES + 1) * n);
+        self.recent = rows;
+        let rows = || samples.positions.chunks_exact(n);
+        let torques = || samples.torques.chunks_exact(n);
+        for (positions, torques) in rows().zip(torques()) {
             self.marks.take(positions, torques);
-            self.means.take(torques);
-            self.roughness[0].take(positions);
-            self.roughness[1].take(torques);
-            for ([low, high], torque) in self.torques.iter_mut().zip(torques) {
+        }
+        torques().for_each(|torques| self.means.take(torques));
+        rows().for_each(|row| self.roughness[0].take(row));
+        torques().for_each(|row| self.roughness[1].take(row));
+        for ([low, high], actuator) in self.torques.iter_mut().zip(0..) {
+            for torque in samples.torques[actuator..].iter().step_by(n) {
                 high.take(*torque);
                 low.take(-torque);
             }
-            if self.recent.len() > SPEED_SAMPLES {
-                self.recent.rotate_left(1);
-                self.recent[SPEED_SAMPLES].copy_from_slice(positions);
-            } else {
-                self.recent.push_back(positions.to_vec());
-            }
-            self.samples += 1;
         }
+        self.samples += all - known;
     }
 
     /// What another run has of this one, sample by sample.
@@ -408,30 +414,34 @@ impl Monitor {
 }
 
 impl Position {
-    /// Takes the position of the actuator in the row of sample `sample`; `recent` are the rows before.
-    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &VecDeque<Vec<f64>>) {
-        let position = row[actuator];
-        let Some(last) = recent.back() else {
+    /// Takes the position of the actuator in the row of sample `sample`; `recent` are the rows before, up to
+    /// [`SPEED_SAMPLES`] + 1 of them.
+    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &[f64]) {
+        let (n, position) = (row.len(), row[actuator]);
+        let known = recent.len() / n;
+        let back = |rows: usize| recent[(known - rows) * n + actuator];
+        if known == 0 {
             (self.low, self.high) = (position, position);
             self.bounds = row.iter().map(|q| (*q, *q)).collect();
             return;
-        };
+        }
         self.low = self.low.min(position);
         self.high = self.high.max(position);
-        let step = position - last[actuator];
+        let step = position - back(1);
         self.steps += step * step;
         self.sizes.take(step.abs());
         if step != 0.0 {
             let smallest = self.smallest.unwrap_or(f64::INFINITY);
             self.smallest = Some(smallest.min(step.abs()));
         }
-        if let Some(before) = recent.len().checked_sub(2) {
-            let change = (step - (last[actuator] - recent[before][actuator])).abs();
+        if known > 1 {
+            let change = (step - (back(1) - back(2))).abs();
             self.changes.take(change);
             self.note_jump(change, sample);
         }
-        if recent.len() > SPEED_SAMPLES {
-            self.speed = self.speed.max((position - recent[0][actuator]).abs());
+        let is_long = known > SPEED_SAMPLES;
+        if is_long {
+            self.speed = self.speed.max((position - back(known)).abs());
         }
         if step != 0.0 {
             self.end_rest(sample);
@@ -445,10 +455,10 @@ impl Position {
         }
         if self.since + 1 == sample {
             // The first equal value: how fast was it before?
-            self.speed_before = recent
-                .front()
-                .filter(|_| recent.len() > SPEED_SAMPLES)
-                .map_or(0.0, |first| (position - first[actuator]).abs());
+            self.speed_before = match is_long {
+                true => (position - back(known)).abs(),
+                false => 0.0,
+            };
         }
     }
 

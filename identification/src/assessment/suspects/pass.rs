@@ -207,6 +207,7 @@ impl Pass<'_> {
         };
         let layout = self.frame.layout;
         let own = layout.base + 1;
+        let mut factors = Vec::new();
         for sample in 0..motion.samples {
             let part = |all, width| slice(all, width, sample, 1);
             let here = Sample {
@@ -225,7 +226,8 @@ impl Pass<'_> {
             // Waves, which come last, are made of decimated positions.
             let narrow = self.frame.suspects.iter();
             let narrow = narrow.take(layout.decimated - layout.base);
-            let factors: Vec<f64> = narrow.map(|suspect| here.factor(*suspect)).collect();
+            factors.clear();
+            factors.extend(narrow.map(|suspect| here.factor(*suspect)));
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];
                 let narrow = row.len() - own - sizes.payload_parameters;
@@ -247,10 +249,10 @@ impl Pass<'_> {
         let (n, r) = (sizes.actuators, sizes.dof);
         let (width, p, y) = (self.width(), self.base.len(), self.frame.layout.base);
         let mut both = [motion.torques.clone(), motion.torques.clone()];
+        let (mut taken, mut own) = ([vec![0.0; r], vec![0.0; r]], vec![0.0; n]);
         for sample in 0..motion.samples {
             let jacobian = slice(jacobians, n * r, sample, 1);
             let torques = slice(&motion.torques, n, sample, 1);
-            let mut taken = [vec![0.0; r], vec![0.0; r]];
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];
                 let measured = torques.iter().enumerate();
@@ -268,7 +270,6 @@ impl Pass<'_> {
                 continue;
             };
             for (all, taken) in both.iter_mut().zip(&taken) {
-                let mut own = vec![0.0; n];
                 product(&distribution, taken, &mut own);
                 let torques = &mut all[sample * n..(sample + 1) * n];
                 torques
