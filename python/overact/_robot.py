@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
+from ._errors import unknown
 from ._functions import Functions
 from ._model import BaseParameter, Cost, Parameter
 from ._overact import Function, Handle
@@ -27,7 +28,7 @@ class _Table(tuple):
             for one in self:
                 if one.name == key:
                     return one
-            raise KeyError(key)
+            raise unknown("parameter", key, (one.name for one in self))
         return super().__getitem__(key)
 
 
