@@ -108,5 +108,20 @@ def unknown(what: str, name: Any, known: Iterable[str]) -> UnknownNameError:
     return UnknownNameError(f"there is no {what} `{name}`", help)
 
 
+class Named(dict):
+    """Numbers by the names of parameters, or others by the names of functions."""
+
+    _what = "parameter"
+
+    def __missing__(self, name: Any) -> Any:
+        raise unknown(self._what, name, self)
+
+
+class NamedFunctions(Named):
+    """By the names of functions."""
+
+    _what = "function"
+
+
 class InternalError(OveractError, RuntimeError):
     """Something is wrong with overact itself; please report it."""

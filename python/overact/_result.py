@@ -9,7 +9,7 @@ import tempfile
 from dataclasses import dataclass
 from typing import Any, Iterator, Mapping, Sequence
 
-from ._errors import unknown
+from ._errors import Named, unknown
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ class Identification:
         """Standard parameters that a robot can have, by name (SI units): what `Robot.parameter_vector`,
         `Robot.simulate` and controllers take. Empty where there are none."""
         all = self._document["consistent"]
-        return {one["name"]: one["value"] for one in all[0]["parameters"]} if all else {}
+        return Named({one["name"]: one["value"] for one in all[0]["parameters"]} if all else {})
 
     def to_dict(self) -> dict[str, Any]:
         """The document that ``overact identify --json`` prints."""

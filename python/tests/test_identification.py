@@ -155,6 +155,8 @@ def test_estimates_are_objects(robot, result):
     assert isinstance(caught.value, KeyError) and "did you mean `base, " in str(caught.value)
     with pytest.raises(overact.UnknownNameError, match="no parameter `zz_platfrom"):
         base["zz_platfrom"]
+    with pytest.raises(overact.UnknownNameError, match="no parameter `m_platfrom"):
+        result.consistent["m_platfrom"]
     assert base.get("zz_platfrom") is None and "zz_platfrom" not in base
     columns = result.recommended.to_columns()
     assert len(set(map(len, columns.values()))) == 1 and columns["parameter"] == list(result.recommended)
