@@ -57,7 +57,7 @@ fn a_chain_whose_end_shares_too_little() {
     );
     assert_said(
         &text,
-        "25:1",
+        "19:1",
         &[
             "chain `linkage` can move while its second body stands still",
             "2 joints move an end that shares only one motion with it",
