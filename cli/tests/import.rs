@@ -67,3 +67,84 @@ fn masses_in_a_point_and_plates_are_no_prior() {
     let (_, prior) = text.split_once("[prior.values]").expect("a prior");
     assert!(prior.contains("xx_yaw"), "{text}");
 }
+
+/// A head on six arms with a rod each, MJCF: the head hangs on the first rod, and the other rods are tied to it.
+fn head_on_rods() -> String {
+    let places: Vec<[[f64; 3]; 3]> = (0..6_u8)
+        .map(|leg| {
+            let turn = f64::from(leg / 2) * 120.0;
+            let side = if leg % 2 == 0 { -1.0 } else { 1.0 };
+            let around = |radius: f64, degrees: f64, height: f64| {
+                let angle = (turn + side * degrees).to_radians();
+                [radius * angle.cos(), radius * angle.sin(), height]
+            };
+            let (hip, elbow) = (around(0.16, 20.0, 0.0), around(0.24, 22.0, 0.02));
+            [hip, elbow, around(0.12, 45.0, 0.3)]
+        })
+        .collect();
+    let between =
+        |a: &[f64; 3], b: &[f64; 3]| format!("{} {} {}", b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    let head = [0.0, 0.0, 0.3];
+    let (mut bodies, mut ties, mut motors) = (String::new(), String::new(), String::new());
+    for (leg, [hip, elbow, end]) in places.iter().enumerate() {
+        let (arm, rod) = (between(hip, elbow), between(elbow, end));
+        let axis = format!("{} {} 0", -hip[1], hip[0]);
+        let carried = match leg {
+            0 => format!(
+                "<body name='head' pos='{}'><joint name='neck' type='ball' pos='{}'/>\
+                 <inertial pos='0 0 0.05' mass='0.6' diaginertia='0.002 0.003 0.004'/></body>",
+                between(elbow, &head),
+                between(&head, end)
+            ),
+            _ => {
+                ties += &format!("<connect body1='rod{leg}' body2='head' anchor='{rod}'/>\n");
+                String::new()
+            }
+        };
+        bodies += &format!(
+            "<body name='arm{leg}' pos='{} {} {}'><joint name='motor{leg}' axis='{axis}' range='-12 12' armature='0.001'/>\
+             <inertial pos='0 0 0' mass='0.05' diaginertia='1e-5 1e-5 1e-5'/>\
+             <body name='rod{leg}' pos='{arm}'><joint name='ball{leg}' type='ball'/>\
+             <inertial pos='0 0 0' mass='0.02' diaginertia='1e-5 1e-5 1e-5'/>{carried}</body></body>\n",
+            hip[0], hip[1], hip[2]
+        );
+        motors += &format!("<motor joint='motor{leg}'/>\n");
+    }
+    format!(
+        "<mujoco model='head'><worldbody>{bodies}</worldbody>\
+         <equality>{ties}</equality><actuator>{motors}</actuator></mujoco>"
+    )
+}
+
+/// The skeleton goes through a rod, which spins in the file and does not in the description: the motion that was
+/// found to keep the limits has to be the description's.
+#[test]
+fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
+    let (bench, text) = imported("head.xml", &head_on_rods(), &[]);
+    assert!(
+        text.contains("\"neck_3\""),
+        "the head is in the skeleton: {text}"
+    );
+    // A period or more of each run.
+    let duration = text.lines().find(|line| line.starts_with("duration = "));
+    let short = text.replace(duration.expect("a duration"), "duration = \"4 s\"");
+    bench.write("short.toml", &short);
+    bench.good(&["simulate", "short.toml", "-o", "log.csv"]);
+    for run in ["first", "second", "held_out"] {
+        let log = bench.read(&format!("log_{run}.csv"));
+        let mut rows = log.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let header = rows.next().expect("a header");
+        let is_motor: Vec<bool> = header.iter().map(|name| name.starts_with("q_")).collect();
+        assert_eq!(is_motor.iter().filter(|is| **is).count(), 6, "{header:?}");
+        let mut largest = 0.0_f64;
+        for row in rows {
+            for (value, is) in row.iter().zip(&is_motor) {
+                if *is {
+                    largest = largest.max(value.parse::<f64>().expect("a number").abs());
+                }
+            }
+        }
+        let degrees = largest.to_degrees();
+        assert!((6.0..12.0).contains(&degrees), "{run}: {degrees}");
+    }
+}

@@ -27,37 +27,37 @@
 /// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 15 gd |  |
 /// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
-/// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 7 gd |  |
-/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 13 gd |  |
+/// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 5 gd |  |
+/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
-/// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 7 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 13 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 5 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
-/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
-/// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 12 gd |  |
+/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 10 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
-/// | `project_actuators` | 136, 4 √, 1 sc, 15 gd |  |
+/// | `project_actuators` | 136, 4 √, 1 sc, 13 gd |  |
 /// | `inverse_dynamics` | 581, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_from_joints` | 521, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 743, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_from_actuators` | 743, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 444, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 658, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_base_from_actuators` | 658, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
 /// | `bias` | 465, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `forward_dynamics` | 715, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 16 gd |  |
+/// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 14 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
-/// | `null_space` | 135, 5 √, 1 sc, 16 gd |  |
+/// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
 /// # Names
 ///
@@ -2630,7 +2630,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 26 guards, 51 negations, 526 intermediates.
+    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 51 negations, 526 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -2786,21 +2786,6 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_3,
             0.3076928490286828,
@@ -3160,7 +3145,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 48 negations, 401 intermediates.
+    /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 48 negations, 401 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3422,16 +3407,6 @@ impl DualV {
             3.5376915986291904,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -3606,7 +3581,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 58 negations, 366 intermediates.
+    /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 58 negations, 366 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3694,16 +3669,6 @@ impl DualV {
         let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
         let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
         let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-        ::overact::guard::platform(
-            det_ja,
-            7.075383197161306,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            7.075383197161306,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             7.075383197161306,
@@ -4006,7 +3971,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 49 negations, 628 intermediates.
+    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 49 negations, 628 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -4263,31 +4228,6 @@ impl DualV {
             det_ja,
             3.5376915986291904,
             ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
             s_1_1,
@@ -5186,7 +5126,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 26 guards, 43 negations, 486 intermediates.
+    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 43 negations, 486 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -5335,21 +5275,6 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_3,
             0.3076928490286828,
@@ -5627,7 +5552,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 39 negations, 376 intermediates.
+    /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 39 negations, 376 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5797,16 +5722,6 @@ impl DualV {
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             3.5376915986291904,
@@ -6078,7 +5993,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 51 negations, 341 intermediates.
+    /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 51 negations, 341 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6140,16 +6055,6 @@ impl DualV {
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
         let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
         let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-        ::overact::guard::platform(
-            det_ja,
-            7.075383197161306,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            7.075383197161306,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             7.075383197161306,
@@ -6485,7 +6390,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 40 negations, 607 intermediates.
+    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 40 negations, 607 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -6599,16 +6504,6 @@ impl DualV {
             3.5376915986291904,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -6647,21 +6542,6 @@ impl DualV {
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_3,
             0.3076928490286828,
@@ -7155,7 +7035,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 26 guards, 5 negations, 390 intermediates.
+    /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 23 guards, 5 negations, 390 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -7297,21 +7177,6 @@ impl DualV {
             0.3076928490286828,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -7436,7 +7301,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 12 guards, 2 negations, 142 intermediates.
+    /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 10 guards, 2 negations, 142 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7508,16 +7373,6 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             3.5376915986291904,
@@ -7687,7 +7542,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 139 intermediates.
+    /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 13 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7772,16 +7627,6 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             3.5376915986291904,
@@ -8548,7 +8393,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 743 operations (325 additions, 401 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 752 intermediates.
+    /// 743 operations (325 additions, 401 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 752 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -8698,36 +8543,6 @@ impl DualV {
         )?;
         let l_3_2 = schur_2_3 / pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_3,
             0.3076928490286828,
@@ -9684,7 +9499,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 658 operations (293 additions, 351 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 667 intermediates.
+    /// 658 operations (293 additions, 351 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 667 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -9829,36 +9644,6 @@ impl DualV {
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_3,
             0.3076928490286828,
@@ -12040,7 +11825,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 16 guards, 583 intermediates.
+    /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 14 guards, 583 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -12349,16 +12134,6 @@ impl DualV {
             3.5376915986291904,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let half_per_det_ja = 0.5 / det_ja;
         let vx_by_a1 = t1 * half_per_det_ja;
         let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
@@ -12581,7 +12356,7 @@ impl DualV {
     ///
     /// Output: 4 x 1.
     ///
-    /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 16 guards, 3 negations, 138 intermediates.
+    /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 14 guards, 3 negations, 138 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -12665,16 +12440,6 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             3.5376915986291904,

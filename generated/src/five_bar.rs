@@ -16,35 +16,35 @@
 /// | `actuator_positions` | 45, 2 √, 2 at, 4 gd |  |
 /// | `inverse_jacobian` | 43, 2 √, 6 gd |  |
 /// | `inverse_jacobian_from_joints` | 8, 4 sc, 2 gd |  |
-/// | `jacobian` | 51, 2 √, 8 gd |  |
+/// | `jacobian` | 51, 2 √, 7 gd |  |
 /// | `legs_jacobian_from_joints` | 14, 4 sc |  |
 /// | `legs_platform_jacobian_from_joints` | 0 |  |
 /// | `closure_platform_jacobian_from_joints` | 6, 2 sc |  |
 /// | `closure_actuator_jacobian_from_joints` | 2, 2 sc |  |
 /// | `joint_velocities` | 61, 2 √, 6 gd |  |
 /// | `joint_accelerations` | 101, 2 √, 6 gd |  |
-/// | `twist_from_actuators` | 55, 2 √, 8 gd |  |
-/// | `acceleration_from_actuators` | 89, 2 √, 8 gd |  |
+/// | `twist_from_actuators` | 55, 2 √, 7 gd |  |
+/// | `acceleration_from_actuators` | 89, 2 √, 7 gd |  |
 /// | `idm_red_platform` | 194, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_from_joints` | 161, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_from_actuators` | 224, 3 √, 2 sc, 4 sg, 12 gd |  |
-/// | `idm_red_actuators` | 182, 2 √, 4 sg, 8 gd |  |
-/// | `idm_red_actuators_from_joints` | 155, 4 sc, 4 sg, 4 gd |  |
-/// | `idm_red_actuators_from_actuators` | 208, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `idm_red_platform_from_actuators` | 224, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `idm_red_actuators` | 182, 2 √, 4 sg, 7 gd |  |
+/// | `idm_red_actuators_from_joints` | 155, 4 sc, 4 sg, 3 gd |  |
+/// | `idm_red_actuators_from_actuators` | 208, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `idm_red_platform_base` | 166, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_base_from_joints` | 129, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 195, 3 √, 2 sc, 4 sg, 12 gd |  |
-/// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 8 gd |  |
-/// | `idm_red_actuators_base_from_joints` | 137, 4 sc, 4 sg, 4 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 195, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 7 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 137, 4 sc, 4 sg, 3 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `project_platform` | 49, 2 √, 6 gd |  |
 /// | `project_actuators` | 0 |  |
-/// | `inverse_dynamics` | 222, 2 √, 4 sg, 8 gd |  |
-/// | `inverse_dynamics_from_joints` | 188, 4 sc, 4 sg, 4 gd |  |
-/// | `inverse_dynamics_from_actuators` | 248, 3 √, 2 sc, 4 sg, 14 gd |  |
-/// | `inverse_dynamics_base` | 186, 2 √, 4 sg, 8 gd |  |
-/// | `inverse_dynamics_base_from_joints` | 147, 4 sc, 4 sg, 4 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 211, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `inverse_dynamics` | 222, 2 √, 4 sg, 7 gd |  |
+/// | `inverse_dynamics_from_joints` | 188, 4 sc, 4 sg, 3 gd |  |
+/// | `inverse_dynamics_from_actuators` | 248, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `inverse_dynamics_base` | 186, 2 √, 4 sg, 7 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 147, 4 sc, 4 sg, 3 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 211, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `mass_matrix` | 111, 2 √, 6 gd |  |
 /// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
 /// | `bias` | 198, 2 √, 4 sg, 6 gd |  |
@@ -505,7 +505,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 8 guards, 2 negations, 49 intermediates.
+    /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 7 guards, 2 negations, 49 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -557,11 +557,6 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
@@ -875,7 +870,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 8 guards, 1 negation, 55 intermediates.
+    /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 55 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -935,11 +930,6 @@ impl FiveBar {
             22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         let t2 = 1.0 / t1;
         ::core::result::Result::Ok([
             -(t2
@@ -959,7 +949,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 8 guards, 1 negation, 89 intermediates.
+    /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 89 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1020,11 +1010,6 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
@@ -1480,7 +1465,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 24 negations, 185 intermediates.
+    /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1556,21 +1541,6 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
@@ -1731,7 +1701,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 8 guards, 12 negations, 156 intermediates.
+    /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 12 negations, 156 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1818,11 +1788,6 @@ impl FiveBar {
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             22.615508735629323,
@@ -1940,7 +1905,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 155 operations (46 additions, 106 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 12 negations, 135 intermediates.
+    /// 155 operations (46 additions, 106 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 12 negations, 135 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2006,11 +1971,6 @@ impl FiveBar {
         let g1_vy_right = s12_right * k1_right;
         let g1_vx_right = c12_right * k1_right;
         let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629227,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             22.615508735629227,
@@ -2124,7 +2084,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 189 intermediates.
+    /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 189 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2208,26 +2168,6 @@ impl FiveBar {
             det_ja,
             22.615508735629323,
             ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
             det_ja,
@@ -2670,7 +2610,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 19 negations, 163 intermediates.
+    /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2738,21 +2678,6 @@ impl FiveBar {
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
@@ -2859,7 +2784,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 8 guards, 11 negations, 144 intermediates.
+    /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 11 negations, 144 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2925,11 +2850,6 @@ impl FiveBar {
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             22.615508735629323,
@@ -3027,7 +2947,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 137 operations (40 additions, 94 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 12 negations, 123 intermediates.
+    /// 137 operations (40 additions, 94 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 12 negations, 123 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3075,11 +2995,6 @@ impl FiveBar {
         let g1_vx_left = c12_left * k1_left;
         let g1_vy_right = s12_right * k1_right;
         let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629227,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             22.615508735629227,
@@ -3178,7 +3093,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 177 intermediates.
+    /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 177 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3253,26 +3168,6 @@ impl FiveBar {
             det_ja,
             22.615508735629323,
             ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
             det_ja,
@@ -3466,7 +3361,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 222 operations (86 additions, 125 multiplications, 11 divisions), 2 square roots, 4 signs, 8 guards, 222 intermediates.
+    /// 222 operations (86 additions, 125 multiplications, 11 divisions), 2 square roots, 4 signs, 7 guards, 222 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3618,11 +3513,6 @@ impl FiveBar {
             22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         let t2 = (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
             + force_y_platform) / t1;
         let force_x_platform = acceleration[0] * parameters[24];
@@ -3656,7 +3546,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 188 operations (72 additions, 110 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 194 intermediates.
+    /// 188 operations (72 additions, 110 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 194 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3781,11 +3671,6 @@ impl FiveBar {
             22.615508735629227,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629227,
-            ::overact::ActuatorGroup::All,
-        )?;
         let t2 = (force_y_platform
             - (minus_g2_vy_left * force_on_u2_left
                 + minus_g2_vy_right * force_on_u2_right)) / t1;
@@ -3821,7 +3706,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 248 operations (96 additions, 144 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 251 intermediates.
+    /// 248 operations (96 additions, 144 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 251 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3891,31 +3776,6 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
@@ -4046,7 +3906,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 186 operations (70 additions, 109 multiplications, 7 divisions), 2 square roots, 4 signs, 8 guards, 186 intermediates.
+    /// 186 operations (70 additions, 109 multiplications, 7 divisions), 2 square roots, 4 signs, 7 guards, 186 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4188,11 +4048,6 @@ impl FiveBar {
             22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         let t2 = (g2_vy_left * force_on_u2_left
             + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
         let force_x_platform = acceleration[0] * base_parameters[0];
@@ -4222,7 +4077,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 147 operations (52 additions, 90 multiplications, 5 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 153 intermediates.
+    /// 147 operations (52 additions, 90 multiplications, 5 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 153 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4337,11 +4192,6 @@ impl FiveBar {
             22.615508735629227,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629227,
-            ::overact::ActuatorGroup::All,
-        )?;
         let t2 = (minus_g2_vy_left * minus_force_on_u2_left
             + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
         let force_x_platform = acceleration[0] * base_parameters[0];
@@ -4375,7 +4225,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 211 operations (80 additions, 118 multiplications, 13 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 214 intermediates.
+    /// 211 operations (80 additions, 118 multiplications, 13 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 214 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4443,31 +4293,6 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right / det_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             t1,
             22.615508735629323,

@@ -27,33 +27,33 @@
 /// | `acceleration_from_actuators` | 174, 3 √, 11 gd |  |
 /// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 17 gd | 186, 6 √, 3 at, 17 gd |
-/// | `idm_red_actuators` | 267, 3 √, 6 sg, 11 gd |  |
-/// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 5 gd |  |
-/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators` | 267, 3 √, 6 sg, 10 gd |  |
+/// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 4 gd |  |
+/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
 /// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 17 gd | 186, 6 √, 3 at, 17 gd |
-/// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 11 gd |  |
-/// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 10 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 4 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
-/// | `project_actuators` | 88, 3 √, 11 gd |  |
+/// | `project_actuators` | 88, 3 √, 10 gd |  |
 /// | `inverse_dynamics` | 332, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_from_joints` | 290, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 404, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_from_actuators` | 404, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
 /// | `inverse_dynamics_base` | 278, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 237, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 351, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base_from_actuators` | 351, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
 /// | `bias` | 261, 3 √, 6 sg, 9 gd |  |
 /// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
 /// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
 /// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 12 gd |  |
+/// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 11 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
-/// | `null_space` | 89, 4 √, 12 gd |  |
+/// | `null_space` | 89, 4 √, 11 gd |  |
 ///
 /// # Names
 ///
@@ -1787,7 +1787,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 19 negations, 286 intermediates.
+    /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 19 negations, 286 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -1896,16 +1896,6 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
@@ -2076,7 +2066,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 20 negations, 228 intermediates.
+    /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 20 negations, 228 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2221,11 +2211,6 @@ impl ThreeLegPoint {
             15.09578052481963,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
@@ -2307,7 +2292,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 16 negations, 199 intermediates.
+    /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 16 negations, 199 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2363,11 +2348,6 @@ impl ThreeLegPoint {
         let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.095780524666612,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             15.095780524666612,
@@ -2500,7 +2480,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 20 negations, 321 intermediates.
+    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 20 negations, 321 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -2671,21 +2651,6 @@ impl ThreeLegPoint {
             det_ja,
             15.09578052481963,
             ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
             s_1_1,
@@ -3150,7 +3115,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 15 negations, 272 intermediates.
+    /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 15 negations, 272 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -3260,16 +3225,6 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
@@ -3407,7 +3362,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 13 negations, 216 intermediates.
+    /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 13 negations, 216 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3528,11 +3483,6 @@ impl ThreeLegPoint {
             15.09578052481963,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
@@ -3617,7 +3567,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 10 negations, 187 intermediates.
+    /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 10 negations, 187 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3660,11 +3610,6 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.095780524666612,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             15.095780524666612,
@@ -3785,7 +3730,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 13 negations, 309 intermediates.
+    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 13 negations, 309 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -3880,11 +3825,6 @@ impl ThreeLegPoint {
             15.09578052481963,
             ::overact::ActuatorGroup::Kept,
         )?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -3907,16 +3847,6 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
@@ -4146,7 +4076,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 11 guards, 89 intermediates.
+    /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 10 guards, 89 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4217,11 +4147,6 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             15.09578052481963,
@@ -4701,7 +4626,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 404 operations (164 additions, 229 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 1 negation, 406 intermediates.
+    /// 404 operations (164 additions, 229 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 1 negation, 406 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -4810,26 +4735,6 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
@@ -5406,7 +5311,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 351 operations (142 additions, 200 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 352 intermediates.
+    /// 351 operations (142 additions, 200 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 352 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -5513,26 +5418,6 @@ impl ThreeLegPoint {
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
@@ -6903,7 +6788,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 343 operations (132 additions, 203 multiplications, 8 divisions), 4 square roots, 6 signs, 12 guards, 2 negations, 344 intermediates.
+    /// 343 operations (132 additions, 203 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 344 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6992,11 +6877,6 @@ impl ThreeLegPoint {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             15.09578052481963,
@@ -7275,7 +7155,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 1.
     ///
-    /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 12 guards, 2 negations, 90 intermediates.
+    /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 11 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7346,11 +7226,6 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
         ::overact::guard::platform(
             det_ja,
             15.09578052481963,

@@ -99,10 +99,8 @@ fn lines_with_more_cells_than_others_are_errors() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,1,0,5\n0.2,,2,1\n0.3,1,1,\n");
     assert_eq!(
         text(log, folder.path()),
-        "log.csv:3: the line has 4 columns, but the header names 3\n  help: if decimals stand behind commas, separate \
-         the columns by semicolons or tabs; else name every column\n\
-         log.csv:4: the line has 4 columns, but the header names 3\n  help: if decimals stand behind commas, separate \
-         the columns by semicolons or tabs; else name every column"
+        "log.csv:3: the line has 4 columns, but the header names 3, here and in one line further down\n  help: if \
+         decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
     );
     // A separator at the end of lines is no column.
     let (log, _folder) = csv("time,q_1,tau_1\n0,0,0,\n0.1,1,0,\n0.2,2,1,\n");

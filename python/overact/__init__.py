@@ -18,6 +18,7 @@ from ._errors import (
     InternalError,
     OveractError,
     Problem,
+    UnknownNameError,
 )
 from ._identify import identify
 from ._model import BaseParameter, Cost, Iteration, Parameter
@@ -45,6 +46,7 @@ __all__ = [
     "Robot",
     "Run",
     "Symbolic",
+    "UnknownNameError",
     "Verdict",
     "__version__",
     "identify",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterable
+from difflib import get_close_matches
+from typing import Any, Iterable
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,46 @@ class EvaluationError(OveractError, ArithmeticError):
         super().__init__(message)
         self.sample = sample
         self.reason = reason
+
+
+class UnknownNameError(OveractError, KeyError):
+    """A name by which nothing is called; `help` has the nearest that there is."""
+
+    # That of KeyError puts the message into quotes.
+    __str__ = Exception.__str__
+
+    def __init__(self, message: str, help: str | None = None) -> None:
+        text = message if help is None else f"{message}: {help}"
+        super().__init__(text, [(message, None, None, None, help)])
+
+
+def unknown(what: str, name: Any, known: Iterable[str]) -> UnknownNameError:
+    """The error of a name by which no `what` is called."""
+    names = list(known)
+    near = get_close_matches(str(name), names, n=1)
+    if near:
+        help = f"did you mean `{near[0]}`?"
+    elif not names:
+        help = "there are none"
+    else:
+        more = ", …" if len(names) > 10 else ""
+        help = f"there are {', '.join(names[:10])}{more}"
+    return UnknownNameError(f"there is no {what} `{name}`", help)
+
+
+class Named(dict):
+    """Numbers by the names of parameters, or others by the names of functions."""
+
+    _what = "parameter"
+
+    def __missing__(self, name: Any) -> Any:
+        raise unknown(self._what, name, self)
+
+
+class NamedFunctions(Named):
+    """By the names of functions."""
+
+    _what = "function"
 
 
 class InternalError(OveractError, RuntimeError):

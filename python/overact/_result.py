@@ -9,6 +9,8 @@ import tempfile
 from dataclasses import dataclass
 from typing import Any, Iterator, Mapping, Sequence
 
+from ._errors import Named, unknown
+
 
 @dataclass(frozen=True)
 class ParameterEstimate:
@@ -73,7 +75,10 @@ class Estimate(Mapping):
         self._parameters = {one.name: one for one in estimates}
 
     def __getitem__(self, name: str) -> ParameterEstimate:
-        return self._parameters[name]
+        try:
+            return self._parameters[name]
+        except KeyError:
+            raise unknown("parameter", name, self._parameters) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._parameters)
@@ -184,12 +189,13 @@ class Identification:
         "actuators" or "joints"; the first one if not given).
 
         Raises:
-            KeyError: There is none.
+            UnknownNameError: There is none.
         """
         for one in self._estimates:
             if (one.stage, one.estimator) == (stage, estimator) and model in (None, one.model):
                 return one
-        raise KeyError(f"there is no estimate {stage}, {model or 'any model'}, {estimator}")
+        all = [f"{one.stage}, {one.model}, {one.estimator}" for one in self._estimates]
+        raise unknown("estimate", f"{stage}, {model or 'any model'}, {estimator}", all)
 
     @property
     def base(self) -> Estimate:
@@ -211,7 +217,7 @@ class Identification:
         """Standard parameters that a robot can have, by name (SI units): what `Robot.parameter_vector`,
         `Robot.simulate` and controllers take. Empty where there are none."""
         all = self._document["consistent"]
-        return {one["name"]: one["value"] for one in all[0]["parameters"]} if all else {}
+        return Named({one["name"]: one["value"] for one in all[0]["parameters"]} if all else {})
 
     def to_dict(self) -> dict[str, Any]:
         """The document that ``overact identify --json`` prints."""

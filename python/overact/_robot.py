@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
+from ._errors import Named, NamedFunctions, unknown
 from ._functions import Functions
 from ._model import BaseParameter, Cost, Parameter
 from ._overact import Function, Handle
@@ -27,7 +28,7 @@ class _Table(tuple):
             for one in self:
                 if one.name == key:
                     return one
-            raise KeyError(key)
+            raise unknown("parameter", key, (one.name for one in self))
         return super().__getitem__(key)
 
 
@@ -191,7 +192,8 @@ class Robot(Functions):
     @property
     def true_values(self) -> dict[str, float] | None:
         """Standard parameters of the virtual robot (SI units); None without a virtual experiment."""
-        return self._info["true_values"]
+        values = self._info["true_values"]
+        return None if values is None else Named(values)
 
     # Functions
 
@@ -232,7 +234,7 @@ class Robot(Functions):
         Groups are "control", "identification" and "kinematics"."""
         names = None if functions is None else list(functions)
         document = json.loads(self._handle.costs(names, effort))
-        return {name: Cost._of(one["cost"]) for name, one in document.items()}
+        return NamedFunctions({name: Cost._of(one["cost"]) for name, one in document.items()})
 
     def to_sympy(self, function: str, effort: str = "quick") -> Symbolic:
         """A function as expressions of SymPy (``pip install "overact[sympy]"``), for those who want to

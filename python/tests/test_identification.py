@@ -150,8 +150,14 @@ def test_estimates_are_objects(robot, result):
     document = result.to_dict()["estimates"][0]
     assert [one.value for one in base.values()] == [one["value"] for one in document["parameters"]]
     assert result.estimate("base", "actuators").kept_actuators
-    with pytest.raises(KeyError, match="no estimate base, joints"):
+    with pytest.raises(overact.UnknownNameError, match="no estimate `base, joints") as caught:
         result.estimate("base", "joints")
+    assert isinstance(caught.value, KeyError) and "did you mean `base, " in str(caught.value)
+    with pytest.raises(overact.UnknownNameError, match="no parameter `zz_platfrom"):
+        base["zz_platfrom"]
+    with pytest.raises(overact.UnknownNameError, match="no parameter `m_platfrom"):
+        result.consistent["m_platfrom"]
+    assert base.get("zz_platfrom") is None and "zz_platfrom" not in base
     columns = result.recommended.to_columns()
     assert len(set(map(len, columns.values()))) == 1 and columns["parameter"] == list(result.recommended)
     assert (

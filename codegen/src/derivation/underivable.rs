@@ -53,6 +53,10 @@ impl Underivable {
     #[must_use]
     pub(crate) fn locate(&self, description: &Description) -> Diagnostics {
         let place = |leg: &str| description.legs.iter().find(|l| l.name.value == leg);
+        let motion = match description.platform {
+            Some(_) => "the platform's motion",
+            None => "the robot's motion",
+        };
         let diagnostic = match self {
             Self::InverseKinematics { leg } => {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
@@ -70,8 +74,14 @@ impl Underivable {
             ),
             Self::SingularLeg { leg } => {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
-                Diagnostic::new(Code::ALWAYS_SINGULAR, format!("leg `{leg}` is singular in every configuration"), span)
-                .help("its joint rates are never determined by the platform's motion: check attachment and axes")
+                Diagnostic::new(
+                    Code::ALWAYS_SINGULAR,
+                    format!("leg `{leg}` is singular in every configuration"),
+                    span,
+                )
+                .help(format!(
+                    "its joint rates are never determined by {motion}: check attachment and axes"
+                ))
             }
             Self::SingularHome { leg } => {
                 let platform = || description.platform.as_ref().map(|p| p.motion.span.clone());
@@ -81,11 +91,11 @@ impl Underivable {
                 };
                 let span = span.unwrap_or_else(|| description.name.span.clone());
                 Diagnostic::new(Code::SINGULAR_HOME, format!("{what} is singular at the home configuration"), span)
-                    .help("choose a home pose where no leg is stretched or folded and the actuators hold the platform")
+                    .help("choose a home pose where no leg is stretched or folded and the actuators determine its motion")
             }
             Self::SingularPartition => Diagnostic::new(
                 Code::ALWAYS_SINGULAR,
-                "the kept actuators of case 2 never determine the platform's motion",
+                format!("the kept actuators of case 2 never determine {motion}"),
                 description.name.span.clone(),
             )
             .help("choose other `kept_actuators`"),

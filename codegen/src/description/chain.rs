@@ -19,10 +19,9 @@ pub(super) fn attach(
         return;
     }
     // Without a skeleton an end has nothing to end on: that is told of the ends.
-    let Some(at) = legs.iter().position(|leg| leg.end.is_none()) else {
+    let Some(first) = legs.iter().position(|leg| leg.end.is_none()) else {
         return;
     };
-    let skeleton = legs[at].clone();
     if legs.len() == 1 {
         // After another error a chain may be missing that was meant.
         if context.is_clean() {
@@ -30,10 +29,22 @@ pub(super) fn attach(
         }
         return;
     }
+    let is_skeleton = |leg: &Leg| {
+        let body = shapes.get(leg.shape).and_then(|own| own.base_body.as_ref());
+        leg.end.is_none() && body.is_none_or(|body| body.value == GROUND)
+    };
+    let Some(at) = legs.iter().position(is_skeleton) else {
+        let branch = &legs[first].name;
+        let message = format!("no leg is the skeleton: `{}` is a branch", branch.value);
+        let help = "chains and branches hang on a skeleton: place a leg first that has neither an `end` nor a `base.body`; \
+                    its joints are the robot's coordinates";
+        context.report(Diagnostic::new(Code::STRUCTURE, message, branch.span.clone()).help(help));
+        return;
+    };
+    let skeleton = legs[at].clone();
     if at > 0 {
         let message = format!("the skeleton `{}` is not placed first", skeleton.name.value);
-        let help =
-            "its joints are the robot's coordinates: put its [[place]] before those of the chains";
+        let help = "its joints are the robot's coordinates: put its [[place]] before those of chains and branches";
         context.report(
             Diagnostic::new(Code::STRUCTURE, message, skeleton.name.span.clone()).help(help),
         );
@@ -45,7 +56,11 @@ pub(super) fn attach(
         let Some((leg, after)) = rest.split_first_mut() else {
             continue;
         };
-        let bodies = Bodies { before, after };
+        let bodies = Bodies {
+            before,
+            after,
+            own: (kind(leg), leg.name.value.clone()),
+        };
         let Some(shape) = shapes.get(leg.shape) else {
             continue;
         };
@@ -95,6 +110,16 @@ pub(super) fn attach(
 struct Bodies<'a> {
     before: &'a [Leg],
     after: &'a [Leg],
+    /// What the leg that joins them is, and its name.
+    own: (&'static str, String),
+}
+
+/// What a leg behind the skeleton is called.
+const fn kind(leg: &Leg) -> &'static str {
+    match leg.end {
+        None => "branch",
+        Some(_) => "chain",
+    }
 }
 
 impl Bodies<'_> {
@@ -120,19 +145,22 @@ impl Bodies<'_> {
         let named = |leg: &Leg| leg.name.value == chain;
         if let Some(leg) = self.before.iter().position(named) {
             let own = &self.before[leg];
-            let what = match (leg, &own.end) {
-                (0, _) => "skeleton",
-                (_, None) => "branch",
-                (_, Some(_)) => "chain",
-            };
+            let what = if leg == 0 { "skeleton" } else { kind(own) };
             return body_of(leg, own, name, joint, what, &[]);
         }
-        let message = match self.after.iter().any(named) {
-            true => format!("the chain `{chain}` is not placed before the one that it carries"),
-            false => format!("no chain or branch `{chain}` is placed before this one"),
+        let (kind_of, own) = &self.own;
+        let message = match self.after.iter().find(|leg| named(leg)) {
+            Some(after) => format!(
+                "the {} `{chain}` is not placed before the {kind_of} `{own}`, which needs a body of it",
+                kind(after)
+            ),
+            None if own == chain => {
+                format!("the {kind_of} `{own}` can't stand or end on a body of its own")
+            }
+            None => format!("no chain or branch `{chain}` is placed before the {kind_of} `{own}`"),
         };
-        let help = "chains are solved in the order of their places, so a body that carries a chain \
-                    stands in the skeleton or in a chain that is placed before";
+        let help = "legs are solved in the order of their places, so a body that carries a chain or a branch \
+                    stands in the skeleton, or in a chain or branch that is placed before";
         let others = self.before.iter().map(|leg| leg.name.value.as_str());
         let help = did_you_mean(chain, others).unwrap_or_else(|| help.to_owned());
         Err(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help))

@@ -55,11 +55,12 @@ pub(super) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
     names
 }
 
-/// Whether a robot may carry a payload.
+/// Whether a robot may carry a payload: identification tells it from other bodies by its parameters' names, which
+/// have the name of their leg behind them where there are several.
 pub(super) fn has_payload(robot: &Inventory<'_>) -> bool {
     match robot.platform {
         Some(platform) => platform.payload.is_some(),
-        None => robot.legs.iter().any(Leg::carries_payload),
+        None => robot.legs.len() == 1 && robot.legs.iter().any(Leg::carries_payload),
     }
 }
 
@@ -67,6 +68,9 @@ pub(super) fn has_payload(robot: &Inventory<'_>) -> bool {
 pub(super) fn help(robot: &Inventory<'_>) -> &'static str {
     match robot.platform {
         Some(_) => "describe it in a table [platform.payload]",
+        None if robot.legs.len() > 1 => {
+            "payloads are described of robots with a platform, or without loops: describe what a skeleton, a chain or a branch carries as a body of its own, and loaded runs in a description of the loaded robot"
+        }
         None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
     }
 }

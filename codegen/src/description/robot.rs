@@ -263,9 +263,11 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
             .and_then(|shape| shape.base_body.as_ref());
         has_chains && body.is_some_and(|body| body.value != chain::GROUND)
     };
-    let mut endless = legs.iter().filter(|leg| leg.end.is_none());
-    let _ = endless.next();
-    let second = endless.find(|leg| !is_branch(leg));
+    let mut skeletons = legs
+        .iter()
+        .filter(|leg| leg.end.is_none() && !is_branch(leg));
+    let _ = skeletons.next();
+    let second = skeletons.next();
     if let (false, Some(second)) = (platform, second) {
         let message = "a robot without platform has one leg without an end, and others only on bodies of chains";
         let help = "branches of a tree are joints whose `antecedent` is not the joint before them; \
@@ -276,14 +278,14 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Springs and known torques are described of robots without platform, whose joints are measured.
+/// Springs and known torques are described of robots without loops, whose joints are measured.
 fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     if !is_closed {
         return;
     }
     let joints = || legs.iter().flat_map(|leg| &leg.joints);
     let report = |joint: &super::Joint, what: &str, key: &str| {
-        let message = format!("{what} are described of robots without platform only");
+        let message = format!("{what} are described of robots without loops only");
         let instead = match key {
             "friction_load" => "",
             _ => ", and subtract a known torque in `torques` of [data]",
@@ -303,12 +305,12 @@ fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     }
 }
 
-/// Motors that turn several joints are known of robots without platform: the frame that ends a leg is the last
+/// Motors that turn several joints are known of robots without loops: the frame that ends a leg is the last
 /// joint's.
 fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     let mut joints = legs.iter().flat_map(|leg| &leg.joints);
     if let (true, Some(motor)) = (is_closed, joints.find(|joint| joint.motor.is_some())) {
-        let message = "motors of their own are described of robots without platform only";
+        let message = "motors of their own are described of robots without loops only";
         let help =
             "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
         let error = Diagnostic::new(Code::ACTUATED, message, motor.span.clone());
@@ -358,8 +360,13 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
     if legs.is_empty() || !table.context.is_clean() || names.len() == dof + wanted.value {
         return;
     }
+    let coordinates = if dof == 1 {
+        "coordinate"
+    } else {
+        "coordinates"
+    };
     let message = format!(
-        "a redundancy of {} means {} actuators for {dof} coordinates, but the robot has {}",
+        "a redundancy of {} means {} actuators for {dof} {coordinates}, but the robot has {}",
         wanted.value,
         dof + wanted.value,
         names.len()

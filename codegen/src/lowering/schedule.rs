@@ -193,23 +193,26 @@ impl<'d> Schedule<'d> {
         Ok(Operand::Input { array, index })
     }
 
-    /// The guards, of which only what may not be negative, or has to be positive, depends on the sign.
+    /// The guards, each once, of which only what may not be negative, or has to be positive, depends on the sign.
+    /// A system that is solved tells its determinant of each of its columns, and what divisors ask for may be it.
     fn guards(&mut self) -> Result<Vec<Guard>, InternalError> {
-        let guards = self.dag.guards().iter();
-        guards
-            .map(|guard| {
-                let value = match guard.condition {
-                    Condition::Reach { .. } | Condition::Mass => guard.value,
-                    Condition::Leg { .. }
-                    | Condition::Platform { .. }
-                    | Condition::Closed { .. }
-                    | Condition::Coordinates { .. } => guard.value.positive(),
-                };
-                Ok(Guard {
-                    operand: self.operand(value)?,
-                    condition: guard.condition.clone(),
-                })
-            })
-            .collect()
+        let mut all = Vec::new();
+        for guard in self.dag.guards() {
+            let value = match guard.condition {
+                Condition::Reach { .. } | Condition::Mass => guard.value,
+                Condition::Leg { .. }
+                | Condition::Platform { .. }
+                | Condition::Closed { .. }
+                | Condition::Coordinates { .. } => guard.value.positive(),
+            };
+            let guard = Guard {
+                operand: self.operand(value)?,
+                condition: guard.condition.clone(),
+            };
+            if !all.contains(&guard) {
+                all.push(guard);
+            }
+        }
+        Ok(all)
     }
 }

@@ -65,11 +65,13 @@ pub(super) fn defects(leg: &Leg, velocities: &DMatrix<f64>) -> Vec<Defect> {
     if !still.is_empty() {
         defects.push(Defect::Idle(still));
     }
+    // Of an end that shares a single motion all joints look alike, whatever their axes are.
+    let tells_axes = samples.iter().all(|j| j.nrows() > 1);
     let mut kept: Vec<usize> = Vec::new();
     for &c in &moving {
         let twin = kept
             .iter()
-            .find(|&&k| samples.iter().all(|j| are_parallel(j, k, c)));
+            .find(|&&k| tells_axes && samples.iter().all(|j| are_parallel(j, k, c)));
         match twin {
             Some(&twin) => defects.push(Defect::Twins(independent[twin], independent[c])),
             None => kept.push(c),

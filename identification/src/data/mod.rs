@@ -4,9 +4,10 @@
 //!
 //! Text, MATLAB's `.mat` files up to version 7, NumPy's files and Parquet are read, told apart by their first bytes.
 //! Text may separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
-//! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
-//! and the first step of a time that is not uniform. A large file stays on the disk and is read block by block
-//! whenever its run is gone through; the numbers of a text are kept in a temporary file for that.
+//! comment or none. Readers report every missing column, every cell that is not a number (up to twenty, equal
+//! ones of a column as one) and the first step of a time that is not uniform. A large file stays on the disk and
+//! is read block by block whenever its run is gone through; the numbers of a text are kept in a temporary file for
+//! that.
 
 mod archive;
 mod arrays;

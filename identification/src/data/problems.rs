@@ -8,6 +8,53 @@ use crate::error::{Problem, suggestion};
 /// Cells that are reported one by one; a file of text would else fill the screen.
 pub(super) const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
 
+/// Problems of a file's lines, of which equal ones are told once: a column of words has one on every line.
+#[derive(Default)]
+pub(super) struct Collected {
+    /// Each with the number of lines further down that have it, too.
+    all: Vec<(Problem, usize)>,
+}
+
+impl Collected {
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// How many different ones there are.
+    pub(super) fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    pub(super) fn extend(&mut self, problems: impl IntoIterator<Item = Problem>) {
+        for problem in problems {
+            let is_same = |one: &Problem| {
+                let place = |own: &Problem| (own.file.clone(), own.column.clone());
+                one.code == problem.code
+                    && one.message == problem.message
+                    && place(one) == place(&problem)
+                    && problem.line.is_some()
+            };
+            match self.all.iter_mut().find(|(one, _)| is_same(one)) {
+                Some((_, more)) => *more += 1,
+                None => self.all.push((problem, 0)),
+            }
+        }
+    }
+
+    /// What is said of them.
+    pub(super) fn told(self) -> Vec<Problem> {
+        let told = |(mut problem, more): (Problem, usize)| {
+            match more {
+                0 => {}
+                1 => problem.message += ", here and in one line further down",
+                _ => problem.message += &format!(", here and in {more} lines further down"),
+            }
+            problem
+        };
+        self.all.into_iter().map(told).collect()
+    }
+}
+
 /// Names that are listed, at most.
 const LARGEST_NUMBER_OF_NAMES: usize = 40;
 

@@ -1,8 +1,14 @@
 //! A run is gone through once before it is used, to check and count everything.
 
 use super::{
-    clock::Clock, mapping::Time, problems::LARGEST_NUMBER_OF_PROBLEMS, rows::Rows,
-    samples::Samples, source::Files, spill::Spill, table::Table,
+    clock::Clock,
+    mapping::Time,
+    problems::{Collected, LARGEST_NUMBER_OF_PROBLEMS},
+    rows::Rows,
+    samples::Samples,
+    source::Files,
+    spill::Spill,
+    table::Table,
 };
 use crate::error::{Error, Problem};
 use overact::Code;
@@ -43,7 +49,7 @@ impl Files {
         let mut rows = Rows::new(self)?;
         let mut clock = Clock::default();
         let mut samples = Samples::default();
-        let mut problems = Vec::new();
+        let mut problems = Collected::default();
         let (mut fits, mut spill, mut told, mut last) = (true, None, 0, None);
         let in_memory = self.tables.iter().all(Table::in_memory);
         loop {
@@ -90,7 +96,7 @@ impl Files {
         if problems.is_empty() {
             problems.extend(rows.apart());
         }
-        Error::check(problems)?;
+        Error::check(problems.told())?;
         let frequency = match (time, self.resample) {
             (Time::Column(_), None) => clock.frequency(&self.name)?,
             (Time::Frequency(rate), None) => *rate,

@@ -428,8 +428,13 @@ fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize,
             .iter()
             .any(|&group| !furthest.get(group).copied().unwrap_or(false))
     });
+    let coordinates = if network.mobility == 1 {
+        "coordinate"
+    } else {
+        "coordinates"
+    };
     let message = format!(
-        "no skeleton of {} coordinates was found from which chains determine {}",
+        "no skeleton of {} {coordinates} was found from which chains determine {}",
         network.mobility,
         open.join(", ")
     );

@@ -11,23 +11,29 @@ use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
 
 /// A ball as the description has it: turns about axes one after the other, the first of which is fixed on the body
 /// that it starts from. All vectors are those of the world at home.
+#[derive(Clone)]
 pub(super) struct Ball {
     from: usize,
     to: usize,
     axes: Vec<Vector3<f64>>,
     /// Of a rod, which has two angles, the direction of its line at home.
     line: Option<Vector3<f64>>,
+    /// Where it starts from a rod, the universal joint of that rod. The file lets it spin, the description does not.
+    rod: Option<Box<Ball>>,
 }
 
 impl Ball {
-    /// The ball of an edge that is gone along from one group to another, about these axes at home.
+    /// The ball of an edge that is gone along from one group to another, about these axes at home, behind others.
     pub(super) fn new(
         network: &Network<'_>,
         edge: &Edge,
-        from: usize,
-        to: usize,
+        [from, to]: [usize; 2],
         axes: &[Vector3<f64>],
+        before: &[(usize, Self)],
     ) -> Option<Self> {
+        let rod = before
+            .iter()
+            .find(|(_, own)| own.to == from && own.line.is_some());
         let line = (axes.len() == 2).then(|| network.line(to, &network.states[0]));
         let is_ball = edge.kind == Kind::Ball && (2..=3).contains(&axes.len());
         is_ball.then(|| Self {
@@ -35,6 +41,7 @@ impl Ball {
             to,
             axes: axes.to_vec(),
             line,
+            rod: rod.map(|(_, own)| Box::new(own.clone())),
         })
     }
 
@@ -44,9 +51,48 @@ impl Ball {
         state.poses[body].rotation * network.states[0].poses[body].rotation.inverse()
     }
 
+    /// How far the body that it starts from has turned from home, a rod as its universal joint turns it.
+    fn start(&self, network: &Network<'_>, state: &State) -> Rotation3<f64> {
+        match &self.rod {
+            None => Self::turned(network, self.from, state),
+            Some(rod) => rod.turns(network, state).1,
+        }
+    }
+
+    /// Its axes where they stand, and how far they have turned what it carries from home.
+    fn turns(&self, network: &Network<'_>, state: &State) -> (Vec<Vector3<f64>>, Rotation3<f64>) {
+        let angles = self.angles(network, state);
+        let mut turned = self.start(network, state);
+        let mut axes = Vec::new();
+        for (axis, angle) in self.axes.iter().zip(&angles) {
+            axes.push(turned * axis);
+            turned *= Rotation3::from_axis_angle(&Unit::new_normalize(*axis), *angle);
+        }
+        (axes, turned)
+    }
+
+    /// The angular velocity of the body that it starts from for each motion.
+    fn start_rates(
+        &self,
+        network: &Network<'_>,
+        state: &State,
+        twists: &[DMatrix<f64>],
+    ) -> Option<DMatrix<f64>> {
+        let Some(rod) = &self.rod else {
+            return Some(twists[self.from].rows(3, 3).into_owned());
+        };
+        let (axes, _) = rod.turns(network, state);
+        let mut all = rod.start_rates(network, state, twists)?;
+        for (axis, rates) in axes.iter().zip(rod.rates(network, state, twists)?) {
+            all += axis * DMatrix::from_row_slice(1, rates.len(), &rates);
+        }
+        Some(all)
+    }
+
     /// Its angles, zero at home.
     pub(super) fn angles(&self, network: &Network<'_>, state: &State) -> Vec<f64> {
-        let [a, b] = [self.from, self.to].map(|group| Self::turned(network, group, state));
+        let a = self.start(network, state);
+        let b = Self::turned(network, self.to, state);
         let relative = a.inverse() * b;
         match &self.line {
             None => {
@@ -81,14 +127,8 @@ impl Ball {
         state: &State,
         twists: &[DMatrix<f64>],
     ) -> Option<Vec<Vec<f64>>> {
-        let angles = self.angles(network, state);
-        let mut turned = Self::turned(network, self.from, state);
-        let mut axes = Vec::new();
-        for (axis, angle) in self.axes.iter().zip(&angles) {
-            axes.push(turned * axis);
-            turned *= Rotation3::from_axis_angle(&Unit::new_normalize(*axis), *angle);
-        }
-        let relative = twists[self.to].rows(3, 3) - twists[self.from].rows(3, 3);
+        let (axes, _) = self.turns(network, state);
+        let relative = twists[self.to].rows(3, 3) - self.start_rates(network, state, twists)?;
         let columns: Vec<Vector3<f64>> = match self.line {
             None => axes.clone(),
             Some(_) => {

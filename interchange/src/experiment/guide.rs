@@ -217,7 +217,8 @@ fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usi
         };
         let own: Vec<_> = axes.by_ref().take(count).copied().collect();
         if edge.kind == Kind::Ball {
-            balls.push((index, Ball::new(network, edge, from, to, &own)?));
+            let ball = Ball::new(network, edge, [from, to], &own, &balls)?;
+            balls.push((index, ball));
         }
     }
     Some(balls)

@@ -246,7 +246,7 @@ impl<'d, 'm> Draft<'d, 'm> {
                     "`{}` follows `{other}`, which stands in another leg here",
                     own.name
                 );
-                let help = "a joint can follow one of its own leg: choose other coordinates, `--coordinates`";
+                let help = "a joint can follow one of its own leg only: take the coupling out of the file and drive the joint by a motor, or hold the joint still there";
                 self.files.report(&own.place, message, help);
             }
             let leader = leader.map_or("", |at| self.names[at].as_str());

@@ -142,6 +142,9 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
     } else {
         ""
     };
+    if network.mobility == 1 {
+        return "The skeleton: its joint is the independent coordinate, from which the chains follow.".to_owned();
+    }
     format!(
         "The skeleton: its joints{branches} are the {} independent coordinates, from which the chains follow.",
         network.mobility

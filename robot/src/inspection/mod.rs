@@ -46,6 +46,8 @@ pub struct Inspection {
     pub bodies: Vec<Body>,
     /// Names in column order, the payload's last.
     pub parameters: Vec<String>,
+    /// Those of them that are the platform's payload's.
+    pub payload_parameters: Vec<String>,
     /// Base parameters in the order of their columns, with what is regrouped into them.
     pub base_parameters: Vec<Base>,
     /// All functions with what they cost.
@@ -165,6 +167,12 @@ impl Inspection {
             home_joints: mechanism.home.joints.clone(),
             bodies: bodies(&model),
             parameters: standard.map(|&p| model.parameter_name(p)).collect(),
+            payload_parameters: model
+                .selection
+                .payload
+                .iter()
+                .map(|&p| model.parameter_name(p))
+                .collect(),
             base_parameters: model
                 .base
                 .iter()

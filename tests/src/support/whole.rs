@@ -6,7 +6,7 @@ use super::library::workspace;
 use super::sample::samples;
 use super::{Comparison, Evaluated, Failure, model_with};
 use overact::Function;
-use overact_codegen::{Effort, Request, Source};
+use overact_codegen::{Choice, Effort, Request, Source};
 
 /// What all functions of a description miss of the reference in so many states, by more than the tolerance:
 /// the first is that of functions of base parameters, whose regroupings are told from numbers, the second that
@@ -18,9 +18,27 @@ use overact_codegen::{Effort, Request, Source};
 pub fn against_reference(
     source: Source,
     states: usize,
-    [of_base, of_others]: [f64; 2],
+    tolerances: [f64; 2],
 ) -> Result<Vec<String>, Failure> {
-    let model = model_with(&source, &Request::with_effort(Effort::None))?;
+    of_functions(source, states, tolerances, None)
+}
+
+/// The same of functions that are chosen, where not all are compared.
+///
+/// # Errors
+///
+/// A description that is wrong, and one without regular states.
+pub fn of_functions(
+    source: Source,
+    states: usize,
+    [of_base, of_others]: [f64; 2],
+    functions: Option<&Choice>,
+) -> Result<Vec<String>, Failure> {
+    let request = Request {
+        functions,
+        ..Request::with_effort(Effort::None)
+    };
+    let model = model_with(&source, &request)?;
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     let parameters = expected.parameters();
@@ -41,7 +59,8 @@ pub fn against_reference(
         }
     }
     let [mut all, others] = comparisons;
-    if all.lines.len() + others.lines.len() <= 20 {
+    let least = if functions.is_some() { 5 } else { 20 };
+    if all.lines.len() + others.lines.len() <= least {
         return Err("hardly a function was compared".into());
     }
     all.failures.extend(others.failures);

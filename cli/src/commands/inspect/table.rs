@@ -14,8 +14,7 @@ pub(super) fn text(document: &Inspection) -> String {
     text += "\nBodies\n";
     text += &bodies(document);
     // The payload's parameters are told from the platform's by runs with and without it.
-    let of_robot = |name: &&String| !name.ends_with("_payload");
-    let standard = document.parameters.iter().filter(of_robot).count();
+    let standard = document.parameters.len() - document.payload_parameters.len();
     let _ = writeln!(
         text,
         "\nBase parameters: {} of {standard} standard parameters",

@@ -83,12 +83,13 @@ fn chains_on_chains() {
     let expected = "the chain `rod` has no body `3`; bodies have the names of their joints: 1, 2";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     let errors = listed(&two_rods("body = \"rode.1\"", "body = \"fore\""));
-    let expected = "no chain or branch `rode` is placed before this one; did you mean `rod`?";
+    let expected =
+        "no chain or branch `rode` is placed before the chain `second`; did you mean `rod`?";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     let errors = listed(&two_rods("body = \"second.1\"", "body = \"fore\""));
-    let expected = "no chain or branch `second` is placed before this one; chains are solved in the order of their \
-                    places, so a body that carries a chain stands in the skeleton or in a chain that is \
-                    placed before";
+    let expected = "the chain `second` can't stand or end on a body of its own; legs are solved in the order of \
+                    their places, so a body that carries a chain or a branch stands in the skeleton, or in a \
+                    chain or branch that is placed before";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     // Of two chains that name each other one is not there yet.
     let both = two_rods("body = \"rod.1\"", "body = \"fore\"");
@@ -98,7 +99,8 @@ fn chains_on_chains() {
         1,
     );
     let errors = listed(&turned);
-    let expected = "the chain `second` is not placed before the one that it carries";
+    let expected =
+        "the chain `second` is not placed before the chain `rod`, which needs a body of it";
     assert!(errors[0].contains(expected), "{errors:?}");
 }
 
@@ -135,6 +137,52 @@ fn branches_on_chains() {
 }
 
 #[test]
+fn branches_in_the_wrong_place() {
+    let text = with_hand("body = \"rod.2\"");
+    let hand = "[[place]]\nname = \"hand\"\nshape = \"hand\"\n";
+    let first = text
+        .replace(hand, "")
+        .replacen("[[place]]", &format!("{hand}[[place]]"), 1);
+    let errors = listed(&first);
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert!(
+        errors[0].contains("the skeleton `arm` is not placed first"),
+        "{errors:?}"
+    );
+    let errors = listed(&with_hand("body = \"hand.grip\""));
+    assert!(
+        errors[0].contains("the branch `hand` can't stand or end on a body of its own"),
+        "{errors:?}"
+    );
+    // Without the arm nothing is there that the others hang on.
+    let (head, rest) = text.split_once("[leg.arm]").expect("an arm");
+    let (_, legs) = rest.split_once("[leg.rod]").expect("a rod");
+    let alone = format!("{head}[leg.rod]{legs}")
+        .replace("[[place]]\nname = \"arm\"\nshape = \"arm\"\n", "")
+        .replace("body = \"fore\"", "body = \"rod.1\"");
+    let errors = listed(&alone);
+    assert!(
+        errors[0].contains("no leg is the skeleton: `hand` is a branch"),
+        "{errors:?}"
+    );
+}
+
+/// Of several legs parameters have their leg's name behind them, by which no payload is known.
+#[test]
+fn a_skeleton_carries_no_payload() {
+    let fixed = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n[leg.rod]";
+    let text = robot("", "body = \"fore\"")
+        .replacen("[leg.rod]", fixed, 1)
+        .replacen("[leg.arm]", "payloads = [\"box\"]\n[leg.arm]", 1);
+    let errors = listed(&text);
+    assert!(
+        errors[0].contains("payloads have names, but the robot has no payload")
+            && errors[0].contains("of robots with a platform, or without loops"),
+        "{errors:?}"
+    );
+}
+
+#[test]
 fn chains_that_join_nothing() {
     let errors = listed(&robot("body = \"fore\"", "body = \"fore\""));
     let expected = "20:8 the chain `rod` starts from and ends on the same body; name another body in \
@@ -160,7 +208,7 @@ fn skeletons_in_the_wrong_place() {
     let turned = format!("{before}[[place]]\nname = \"rod\"{rod}[[place]]{arm}");
     let errors = listed(&turned);
     let expected = "26:8 the skeleton `arm` is not placed first; its joints are the robot's coordinates: put \
-                    its [[place]] before those of the chains";
+                    its [[place]] before those of chains and branches";
     assert_eq!(errors, [expected]);
     // A platform leaves no room for a skeleton.
     let errors = listed(&text.replace("[leg.arm]", "[platform]\nmotion = \"planar\"\n[leg.arm]"));

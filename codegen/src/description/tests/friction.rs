@@ -133,7 +133,7 @@ fn only_joints_that_move_have_friction_and_only_measured_ones_known_torques() {
     let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
                     [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\nknown = \"3 N\"\n\
                     [leg.slide.end]\n[[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "5:1 known torques are described of robots without platform only; \
+    let expected = "5:1 known torques are described of robots without loops only; \
                     leave `known` out, and subtract a known torque in `torques` of [data]";
     assert_eq!(listed(platform), [expected]);
 }

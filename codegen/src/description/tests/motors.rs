@@ -133,7 +133,7 @@ fn robots_with_a_platform_have_no_motors_of_their_own() {
                 [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\
                 [[leg.slide.motor]]\nturns = \"q1\"\n[leg.slide.end]\n\
                 [[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "8:1 motors of their own are described of robots without platform only; \
+    let expected = "8:1 motors of their own are described of robots without loops only; \
                     actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
     assert_eq!(listed(text), [expected]);
 }

@@ -107,7 +107,7 @@ fn only_joints_that_move_and_are_measured_have_springs() {
     let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
                     [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\nspring = \"q\"\n\
                     [leg.slide.end]\n[[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "5:1 springs are described of robots without platform only; \
+    let expected = "5:1 springs are described of robots without loops only; \
                     leave `spring` out, and subtract a known torque in `torques` of [data]";
     assert_eq!(listed(platform), [expected]);
 }

@@ -21,12 +21,14 @@ pub(in crate::mechanism) fn too_few_actuators(
     let motion = description.platform.as_ref().map(|p| &p.motion);
     let span = motion.map_or(description.name.span.clone(), |m| m.span.clone());
     let actuators = if count == 1 { "actuator" } else { "actuators" };
-    let owner = match mechanism.skeleton() {
-        Some(_) => "the skeleton",
-        None => "the platform",
+    let owner = owner(mechanism);
+    let degrees = if dof == 1 { "degree" } else { "degrees" };
+    let message = match owner {
+        ROBOT => format!("the robot has {dof} {degrees} of freedom, but {count} {actuators}"),
+        _ => {
+            format!("{owner} has {dof} {degrees} of freedom, but the robot has {count} {actuators}")
+        }
     };
-    let message =
-        format!("{owner} has {dof} degrees of freedom, but the robot has {count} {actuators}");
     let left = left.and_then(|(m, parasitic)| Some((m.of(motion?.value), m.parts(), parasitic)));
     let help = match left {
         Some((left, parts, parasitic)) if left < dof => {
@@ -85,8 +87,14 @@ pub(in crate::mechanism) fn independent(
             None => "choose a `motion` that the legs allow, or give the legs other passive joints"
                 .to_owned(),
         };
+        let coordinates = if own == 1 {
+            "coordinate is"
+        } else {
+            "coordinates are"
+        };
+        let motions = if left == 1 { "motion" } else { "motions" };
         let message = format!(
-            "{own} coordinates are independent, but the legs leave the platform {left} motions"
+            "{own} {coordinates} independent, but the legs leave the platform {left} {motions}"
         );
         return Diagnostic::new(Code::NOT_HELD, message, span).help(help);
     };
@@ -146,6 +154,7 @@ pub(in crate::mechanism) fn underactuated(
         let rates = mechanism.rates_at_home()?;
         Some(rates.select_rows(&mechanism.actuated()))
     };
+    let owner = owner(mechanism);
     // At poses beside home the robot shows whether home alone is singular.
     let everywhere = random_states(mechanism, 4, 3).into_iter().all(|state| {
         let mut beside = mechanism.clone();
@@ -156,17 +165,28 @@ pub(in crate::mechanism) fn underactuated(
     let twins = jacobian(mechanism).map_or_else(Vec::new, |j| twins(mechanism, &j));
     let (message, help) = if everywhere {
         let help = match twins.first() {
+            Some((a, b)) if mechanism.platform.is_none() => {
+                format!("the motors `{a}` and `{b}` do the same: actuate another joint")
+            }
             Some((a, b)) => format!(
                 "the motors `{a}` and `{b}` do the same, as those of legs do that stand at the same place: move or turn one of the legs, or actuate another joint"
             ),
+            None if mechanism.platform.is_none() => "actuate another joint".to_owned(),
             None => "actuate another joint, or attach the legs at other points".to_owned(),
         };
-        ("the actuators never determine the platform's motion", help)
-    } else {
-        let help = "home is a singular pose: choose another one in `home` of [platform]";
         (
-            "the actuators do not determine the platform's motion at the home configuration",
-            help.to_owned(),
+            format!("the actuators never determine {owner}'s motion"),
+            help,
+        )
+    } else {
+        let place = match mechanism.platform {
+            Some(_) => "[platform]",
+            None => "the skeleton's [[place]]",
+        };
+        let help = format!("home is a singular pose: choose another one in `home` of {place}");
+        (
+            format!("the actuators do not determine {owner}'s motion at the home configuration"),
+            help,
         )
     };
     Diagnostic::new(Code::MOVES_FREELY, message, span)
@@ -174,12 +194,22 @@ pub(in crate::mechanism) fn underactuated(
         .help(help)
 }
 
+/// What moves where there is no platform, and more than a skeleton.
+const ROBOT: &str = "the robot";
+
+/// What the actuators have to hold: the platform, the skeleton, or with it the branches on bodies of chains.
+fn owner(mechanism: &Mechanism) -> &'static str {
+    let mut others = mechanism.legs.iter().skip(1);
+    match &mechanism.platform {
+        Some(_) => "the platform",
+        None if mechanism.is_tree() || others.any(|leg| leg.end.is_none()) => ROBOT,
+        None => "the skeleton",
+    }
+}
+
 /// How the platform can move while no actuator does.
 fn free_motions(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> String {
-    let start = match mechanism.skeleton() {
-        Some(_) => "with all motors locked the skeleton can still",
-        None => "with all motors locked the platform can still",
-    };
+    let start = format!("with all motors locked {} can still", owner(mechanism));
     let Some(found) = SingularValues::new(jacobian) else {
         return format!("{start} move");
     };

@@ -108,8 +108,14 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
             format!("{shape} can move while {carrier} stands still"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
-        .label(format!("{joints} joints move an end that has only {motions} motions"))
-        .help("leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\""),
+        .label(match motions {
+            1 => format!("{joints} joints move an end that shares only one motion with it"),
+            _ => format!("{joints} joints move an end that has only {motions} motions"),
+        })
+        .help(match matches!(leg.end.as_ref().map(|end| &end.value), Some(description::End::Point { along, .. }) if along.contains(&false)) {
+            true => "leave out a joint, let one follow others such as theta = \"-q2\", or let the end share more: `along` with more directions, or left out",
+            false => "leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\"",
+        }),
     }
 }
 

@@ -48,6 +48,24 @@ fn a_chain_that_blocks_its_skeleton() {
     );
 }
 
+/// Of an end that shares one direction any two joints would look as if they turned about one axis.
+#[test]
+fn a_chain_whose_end_shares_too_little() {
+    let text = arm(
+        &format!("{DRIVEN}{TURN}{TIP}"),
+        "[-0.1, 0, 0]\nalong = [\"x\"]",
+    );
+    assert_said(
+        &text,
+        "19:1",
+        &[
+            "chain `linkage` can move while its second body stands still",
+            "2 joints move an end that shares only one motion with it",
+            "`along` with more directions",
+        ],
+    );
+}
+
 #[test]
 fn a_chain_that_never_closes() {
     let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[3, 0, 0]");

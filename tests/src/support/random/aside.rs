@@ -1,9 +1,10 @@
 //! Random robots whose platform moves aside: legs that keep a ball on the platform in a plane or on another
 //! surface, and drives that hold nothing.
 //!
-//! One to three legs of two joints and a ball block a direction each, and drives of a universal joint, a slide and
-//! a ball are added until as many motors as motions are there, or one more. Legs stand around the platform, at
-//! random places and tilted, and start near a pose that they allow.
+//! One to three legs of two joints and a ball block a direction each, and drives of three joints and a ball are added
+//! until as many motors as motions are there, or one more: a universal joint and a slide, a crank or a slide with a
+//! rod behind it. Legs stand around the platform, at random places and tilted, and start near a pose that they
+//! allow.
 
 use super::Dice;
 use super::skeleton::write;
@@ -91,7 +92,7 @@ impl Place {
             write(text, format_args!("[[leg.{name}.joint]]\n{what}"));
         };
         let motor = "actuated = true\n";
-        if !blocks {
+        if !blocks && dice.chance(0.5) {
             let cross = "type = \"revolute\"\nalpha = \"90 deg\"\ntheta = \"q + 90 deg\"\n";
             joint(format!("name = \"a\"\n{cross}"));
             joint(format!("name = \"b\"\n{cross}"));
@@ -100,7 +101,17 @@ impl Place {
             ));
             return format!("c = {long:?}");
         }
-        match dice.below(3) {
+        // A rod that swings out of the leg's plane, too, holds nothing.
+        let swing = |joint: &mut dyn FnMut(String)| {
+            if !blocks {
+                joint("name = \"c\"\ntype = \"revolute\"\nalpha = \"90 deg\"\n".to_owned());
+            }
+        };
+        match if blocks {
+            dice.below(3)
+        } else {
+            1 + dice.below(2)
+        } {
             0 => {
                 joint("name = \"a\"\ntype = \"revolute\"\nalpha = \"90 deg\"\n".to_owned());
                 joint(format!(
@@ -113,6 +124,7 @@ impl Place {
                 let turn = -FRAC_PI_2 - (inward / rod).asin();
                 joint(format!("name = \"a\"\ntype = \"prismatic\"\n{motor}"));
                 joint("name = \"b\"\ntype = \"revolute\"\nalpha = \"-90 deg\"\n".to_owned());
+                swing(&mut joint);
                 joint(format!("name = \"tip\"\ntype = \"fixed\"\nd = {rod:?}\n"));
                 let start = self.height - (rod * rod - inward * inward).sqrt();
                 format!("a = {start:?}, b = {turn:?}")
@@ -129,6 +141,7 @@ impl Place {
                 joint(format!(
                     "name = \"b\"\ntype = \"revolute\"\nd = {upper:?}\n"
                 ));
+                swing(&mut joint);
                 joint(format!("name = \"tip\"\ntype = \"fixed\"\nd = {fore:?}\n"));
                 format!("a = {shoulder:?}, b = {elbow:?}")
             }
