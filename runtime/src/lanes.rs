@@ -129,16 +129,17 @@ pub fn elements<const COUNT: usize>(array: &[f64], at: usize) -> [Lanes; COUNT] 
     })
 }
 
-/// Writes a column of each of the legs from `at` on into a row, `STRIDE` columns from one leg's to the next one's.
+/// Writes a column of each of the legs from `at` on into a row: that of the first of all legs is `first`, and from one
+/// leg's to the next one's there are `stride`.
 #[inline(always)]
-pub fn put<const STRIDE: usize, const COLUMNS: usize>(
+pub fn put<const COLUMNS: usize>(
     row: &mut [f64; COLUMNS],
-    first: usize,
+    [first, stride]: [usize; 2],
     at: usize,
     value: impl Into<Lanes>,
 ) {
     let numbers = value.into().to_array();
-    if STRIDE == 1 {
+    if stride == 1 {
         let place = row.get_mut(first + at..);
         if let Some(place) = place.and_then(|rest| rest.first_chunk_mut::<WIDTH>()) {
             *place = numbers;
@@ -146,7 +147,7 @@ pub fn put<const STRIDE: usize, const COLUMNS: usize>(
         return;
     }
     for (lane, number) in numbers.into_iter().enumerate() {
-        if let Some(place) = row.get_mut(first + (at + lane) * STRIDE) {
+        if let Some(place) = row.get_mut(first + (at + lane) * stride) {
             *place = number;
         }
     }

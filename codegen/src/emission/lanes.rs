@@ -28,7 +28,7 @@ pub(super) struct Loop {
 /// The body of a function in lanes.
 pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lanes) -> Loop {
     let kept = between(lanes);
-    let labels = Labels::new(model, function);
+    let labels = Labels::new(model, function).in_lanes(lanes);
     let body = Body::write_with(&lanes.program, &labels, &|name| name == "at", &|at| {
         kept[at]
     });
@@ -251,7 +251,7 @@ impl Split<'_> {
                     let (first, stride) = (unsuffixed(first), unsuffixed(stride));
                     let value = self.own_writer.tokens(value);
                     of_legs.push(quote! {
-                        ::overact::lanes::put::<#stride, _>(&mut output[#row], #first, at, #value);
+                        ::overact::lanes::put(&mut output[#row], [#first, #stride], at, #value);
                     });
                 }
             }

@@ -1,7 +1,7 @@
 //! What inputs and outputs of a function are called where a name is made of them.
 
 use super::dimensions::{Dimension, Dimensions};
-use crate::lowering::Program;
+use crate::lowering::{Column, Lanes, Program};
 use crate::mechanism::TwistCoordinate;
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
@@ -122,6 +122,25 @@ impl Labels {
                 place: String::new(),
             },
         }
+    }
+
+    /// Those of a program in lanes, whose columns stand elsewhere: a leg's are called without the leg's number.
+    #[must_use]
+    pub(crate) fn in_lanes(mut self, lanes: &Lanes) -> Self {
+        let width = lanes.output.shape.last().copied().unwrap_or_default();
+        let of_first = lanes.legs.first().map(|leg| format!("_{leg}_on_"));
+        let label = |row: &[String], column: &Column| {
+            let (at, of_leg) = match *column {
+                Column::Shared(at) => (at, None),
+                Column::OfLegs { first, .. } => (first, of_first.as_deref()),
+            };
+            let label = row.get(at).cloned().unwrap_or_default();
+            of_leg.map_or(label.clone(), |of_leg| label.replace(of_leg, "_leg_on_"))
+        };
+        let rows = self.outputs.chunks(width.max(1));
+        let labels = rows.flat_map(|row| lanes.columns.iter().map(|column| label(row, column)));
+        self.outputs = labels.collect();
+        self
     }
 
     /// For every step of a program the name that its value has as an entry of the output.
