@@ -12,6 +12,9 @@ pub fn of_function(cost: &WholeCost) -> Vec<String> {
         lines.push(format!(
             " That is the straight program, which interpreted robots and other languages have. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
         ));
+        lines.push(
+            " In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.".to_owned(),
+        );
     }
     for iteration in &cost.iterations {
         let (function, step) = (iteration.function, iteration.step);

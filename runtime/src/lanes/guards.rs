@@ -1,4 +1,4 @@
-//! What [`guard`] checks, in every lane: of several legs that fail the first is told.
+//! What [`guard`] checks, in every lane: of several legs that fail in the same the first is told.
 
 use super::{Lanes, load};
 use crate::{Error, guard};

@@ -15,7 +15,7 @@ use super::assemble::Assembler;
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{BodyParameter, Derived, MotionInput, Selection, derive};
 use crate::evaluation::Rows;
-use crate::lowering::{Array, Column, Entry, Lanes, Operand, Program, fold};
+use crate::lowering::{Array, Column, Condition, Entry, Lanes, Operand, Program, fold};
 use crate::mechanism::states::{State, random_states};
 use overact_core::{Columns, Function};
 use template::{ARRAY, Template};
@@ -52,7 +52,8 @@ pub(crate) fn beside(
     let lanes = program(assembler, &template, (function, columns, from), straight)?;
     let (shared, own) = lanes.operations();
     let is_cheap = (shared + own * legs) * 100 <= operations * MOST;
-    (is_cheap && agrees(assembler, &lanes, straight)).then_some(lanes)
+    let is_right = has_lanes_guards(&lanes) && agrees(assembler, &lanes, straight);
+    (is_cheap && is_right).then_some(lanes)
 }
 
 /// The program of a template's first leg and of what all legs share.
@@ -87,24 +88,20 @@ fn program(
     let program = search.lower_with(&arena, mechanism, function, &derived, &standing);
     let (program, array) = (program.ok()?, derived.inputs.len() - 1);
     let folded = fold(&program, array);
-    let constants: Option<Vec<Vec<f64>>> = (0..legs)
-        .map(|leg| {
-            let wanted = of_operands(&program, &folded.elements);
-            let given = |name: &str| (name == ARRAY).then(|| template.values(leg));
-            value(&wanted, &given)
-        })
-        .collect();
+    let wanted = of_operands(&program, &folded.elements);
+    let of_leg = |leg| {
+        let given = |name: &str| (name == ARRAY).then(|| template.values(leg));
+        value(&wanted, &given)
+    };
+    let constants: Option<Vec<Vec<f64>>> = (0..legs).map(of_leg).collect();
     let strides = strides(assembler, &folded.program, array)?;
+    let mut program = folded.program;
+    name_guards(&mut program, &mechanism.legs[0].name);
     let mut lanes = Lanes {
-        program: folded.program,
+        program,
         output: straight.output.clone(),
         columns,
-        legs: assembler
-            .mechanism
-            .legs
-            .iter()
-            .map(|l| l.name.clone())
-            .collect(),
+        legs: mechanism.legs.iter().map(|l| l.name.clone()).collect(),
         array,
         constants: constants?,
         strides,
@@ -130,7 +127,7 @@ fn kept_columns(parameters: &[BodyParameter], legs: usize) -> Option<(Vec<usize>
             let same = BodyParameter::Leg { leg, joint, symbol };
             parameters.iter().position(|other| *other == same)
         };
-        let stride = of(1)? - at;
+        let stride = of(1)?.checked_sub(at)?;
         if !(0..legs).all(|leg| of(leg) == Some(at + leg * stride)) {
             return None;
         }
@@ -149,6 +146,31 @@ fn keep_guards(derived: &mut Derived<'_>, first: &str) {
     for guards in [&mut derived.guards, &mut derived.divisors] {
         guards.retain(|guard| guard.leg.is_empty() || guard.leg == first);
     }
+}
+
+/// What all legs share fails in the first one first. In which leg another guard fails is known when it does.
+fn name_guards(program: &mut Program, first: &str) {
+    for guard in &mut program.guards {
+        if let Condition::Reach { leg }
+        | Condition::Leg { leg, .. }
+        | Condition::Closed { leg, .. } = &mut guard.condition
+        {
+            first.clone_into(leg);
+        }
+    }
+}
+
+/// Whether all guards that belong to legs are such that lanes have.
+fn has_lanes_guards(lanes: &Lanes) -> bool {
+    let of_legs = lanes.of_legs();
+    let mut own = lanes.program.guards.iter();
+    own.all(|guard| {
+        let is_of_leg = matches!(
+            guard.condition,
+            Condition::Reach { .. } | Condition::Leg { .. } | Condition::Closed { .. }
+        );
+        is_of_leg || !lanes.is_of_leg(guard.operand, &of_legs)
+    })
 }
 
 /// How many elements of each input belong to a leg. None if the program reads what belongs to another leg than the

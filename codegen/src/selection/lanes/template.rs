@@ -63,7 +63,7 @@ impl Template {
                 *of_legs[0][at] = angle;
             }
         }
-        "leg".clone_into(&mut legs[0].name);
+        legs[0].name = name(&mechanism.legs);
         let mechanism = Mechanism {
             legs,
             ..mechanism.clone()
@@ -90,6 +90,15 @@ impl Template {
     pub(super) fn values(&self, leg: usize) -> Vec<f64> {
         self.constants.iter().map(|c| c.values[leg]).collect()
     }
+}
+
+/// What the leg that stands for all is called: as no leg is.
+fn name(legs: &[Leg]) -> String {
+    let mut name = "leg".to_owned();
+    while legs.iter().any(|leg| leg.name == name) {
+        name.push_str("_i");
+    }
+    name
 }
 
 /// What a leg is but for its name and these numbers.
