@@ -173,8 +173,9 @@ impl RobotModel {
             whole.once.additions += self.mechanism.pose_len();
             whole.once.guards += self.mechanism.pose_len();
         }
-        let mut step = WholeCost::from(gauss_newton_step(n, r));
-        step.call(WholeCost::from(displacement(r, self.has_quaternion())));
+        let mut step = WholeCost::from(displacement(r, self.has_quaternion()));
+        // The bounds of the next step.
+        step.once.multiplications += 3;
         if self.mechanism.is_parasitic() {
             // One step back onto the closures; where steps are short it is enough.
             let blocked = 6 - r;
@@ -183,8 +184,14 @@ impl RobotModel {
             step.call(self.of(Function::BlockedError, MotionInput::Pose));
             step.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
         }
-        step.call(self.of(Function::ActuatorPositions, MotionInput::Pose));
-        step.call(self.of(Function::InverseJacobian, MotionInput::Pose));
+        match self.function(Function::PoseStep, MotionInput::Pose) {
+            Some(at_once) => step.call(self.cost(at_once)),
+            None => {
+                step.once += gauss_newton_step(n, r);
+                step.call(self.of(Function::ActuatorPositions, MotionInput::Pose));
+                step.call(self.of(Function::InverseJacobian, MotionInput::Pose));
+            }
+        }
         whole.iterate(FORWARD, step);
         whole
     }
@@ -226,9 +233,9 @@ impl RobotModel {
 fn gauss_newton_step(n: usize, r: usize) -> Cost {
     let half = r * (r + 1) / 2;
     let mut cost = Cost {
-        // Differences, Jᵀ Δq and the upper triangle of JᵀJ; the bounds of the next step and of a pivot.
+        // Differences, Jᵀ Δq and the upper triangle of JᵀJ; the bound of a pivot.
         additions: n * (1 + r + half),
-        multiplications: n * (r + half) + r + 3,
+        multiplications: n * (r + half) + r,
         guards: r,
         ..Cost::default()
     };

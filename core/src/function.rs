@@ -54,6 +54,8 @@ pub enum Condition {
     NumericJoints,
     /// A free platform whose legs block directions that change with its pose.
     Parasitic,
+    /// Loops and prismatic actuators alone, with joints that follow from the pose by rule.
+    PrismaticActuators,
 }
 
 /// A function of a robot; [`Function::summary`] says what each computes.
@@ -66,6 +68,7 @@ pub enum Function {
     PoseInClosedForm,
     Joints,
     ActuatorPositions,
+    PoseStep,
     InverseJacobian,
     Jacobian,
     LegsJacobian,
@@ -108,10 +111,11 @@ struct Entry {
 
 impl Function {
     /// All functions of all robots.
-    pub const ALL: [Self; 36] = [
+    pub const ALL: [Self; 37] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
+        Self::PoseStep,
         Self::InverseJacobian,
         Self::Jacobian,
         Self::LegsJacobian,
@@ -176,6 +180,14 @@ impl Function {
                 rows: Extent::Actuators,
                 columns: None,
                 condition: Condition::Any,
+            },
+            Self::PoseStep => Entry {
+                name: "pose_step",
+                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21).",
+                inputs: &[Pose, Actuators],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::PrismaticActuators,
             },
             Self::InverseJacobian => Entry {
                 name: "inverse_jacobian",

@@ -17,6 +17,9 @@ class Functions:
     actuator_positions: Function
     """Positions q of the actuated joints (m, rad), in the working mode of the home configuration. Inputs:
     pose (m, rad). Output: (n,)."""
+    pose_step: Function
+    """The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q
+    - q(x)), eq. (21). Inputs: pose (m, rad), actuators (n; m, rad). Output: (r,)."""
     inverse_jacobian: Function
     """J_p^inv: actuator velocities = J_p^inv v, eq. (20). Inputs: pose (m, rad). Output: (n, r)."""
     inverse_jacobian_from_joints: Function

@@ -5,16 +5,13 @@
 //! its twist their velocities.
 
 mod follow;
+mod forward;
 mod names;
 mod newton;
 
+use forward::Scratch;
 use names::Names;
-use overact::{
-    Error, Function, Info, Input, Model, SampleError, aside,
-    block::samples,
-    forward::{self, Measured},
-    guard,
-};
+use overact::{Error, Function, Info, Input, Model, SampleError, block::samples, guard};
 use overact_codegen::{
     RobotModel,
     derivation::MotionInput,
@@ -59,16 +56,6 @@ struct Served {
     /// Where each input of the program comes from.
     inputs: Vec<Given>,
     evaluators: Pool<Evaluator>,
-}
-
-/// Memory for forward kinematics.
-#[derive(Debug, Default)]
-struct Scratch {
-    actuators: Vec<f64>,
-    inverse_jacobian: Vec<f64>,
-    normal: Vec<f64>,
-    step: Vec<f64>,
-    pose: Vec<f64>,
 }
 
 /// Memory that calls take and give back, so that a call allocates only when more threads than ever
@@ -131,6 +118,7 @@ impl InterpretedRobot {
             Function::PoseInClosedForm
                 | Function::Joints
                 | Function::ActuatorPositions
+                | Function::PoseStep
                 | Function::InverseJacobian
                 | Function::ClosureError
                 | Function::BlockedError
@@ -185,58 +173,6 @@ impl InterpretedRobot {
             index,
             inputs,
             evaluators,
-        })
-    }
-
-    /// The pose by rule, where the robot has one and the spheres meet.
-    fn pose_in_closed_form(&self, actuators: &[f64]) -> Option<Vec<f64>> {
-        let function = self
-            .model
-            .function(Function::PoseInClosedForm, MotionInput::Actuators)?;
-        let mut pose = vec![0.0; self.names.sizes.pose];
-        let given = [Rows {
-            values: actuators,
-            shared: false,
-        }];
-        let found = function.program.evaluate(1, &given, &mut pose);
-        found.ok().map(|()| pose)
-    }
-
-    /// The pose of least squares, found from the one in `pose`.
-    fn fit_pose(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
-        let sizes = self.names.sizes;
-        self.scratch.with(Scratch::default, |scratch| {
-            scratch.resize(&sizes);
-            let Scratch {
-                actuators: reached,
-                inverse_jacobian,
-                normal,
-                step,
-                pose: at,
-            } = scratch;
-            at.copy_from_slice(pose);
-            let is_revolute = &self.names.actuator_is_revolute;
-            forward::gauss_newton(
-                Measured {
-                    positions: actuators,
-                    is_revolute,
-                },
-                at,
-                forward::Workspace {
-                    actuators: reached,
-                    inverse_jacobian,
-                    normal,
-                    step,
-                },
-                |pose, reached, jacobian| {
-                    self.evaluate(Function::ActuatorPositions, &[pose], reached)
-                        .and_then(|()| self.evaluate(Function::InverseJacobian, &[pose], jacobian))
-                        .map_err(|error| error.error)
-                },
-                |pose, step| self.displace(pose, step),
-            )?;
-            pose.copy_from_slice(at);
-            Ok(())
         })
     }
 
@@ -452,47 +388,12 @@ impl Model for InterpretedRobot {
             pose.copy_from_slice(actuators);
             return Ok(());
         }
-        let mut start = pose.to_vec();
-        if self.has_quaternion() {
-            guard::normalise(&mut start, "start")?;
-        }
-        if self.independent.is_some() {
-            self.displace(&mut start, &[]);
-        }
-        let closed = self.pose_in_closed_form(actuators);
-        if let (Some(found), true) = (&closed, sizes.actuators == sizes.dof) {
-            pose.copy_from_slice(found);
-            return Ok(());
-        }
-        let found = forward::from_closed_form(closed, start, |mut at| {
-            self.fit_pose(actuators, &mut at).map(|()| at)
-        })?;
+        let found = self.found_pose(actuators, pose.to_vec())?;
         pose.copy_from_slice(&found);
         Ok(())
     }
 
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
-        if let Some(independent) = &self.independent {
-            aside::displace(pose, step, independent, |pose, errors, jacobian| {
-                self.evaluate(Function::BlockedError, &[pose], errors)
-                    .and_then(|()| self.evaluate(Function::BlockedJacobian, &[pose], jacobian))
-                    .map_err(|error| error.error)
-            });
-        } else if self.has_quaternion() {
-            forward::displace_quaternion(pose, step);
-        } else {
-            forward::displace(pose, step);
-        }
-    }
-}
-
-impl Scratch {
-    fn resize(&mut self, sizes: &overact::Sizes) {
-        let (n, r) = (sizes.actuators, sizes.dof);
-        self.actuators.resize(n, 0.0);
-        self.inverse_jacobian.resize(n * r, 0.0);
-        self.normal.resize(r * r, 0.0);
-        self.step.resize(r, 0.0);
-        self.pose.resize(sizes.pose, 0.0);
+        self.displaced(pose, step);
     }
 }

@@ -57,7 +57,7 @@ pub fn gauss_newton<T: Float>(
     pose: &mut [T],
     workspace: Workspace<'_, T>,
     mut evaluate: impl FnMut(&[T], &mut [T], &mut [T]) -> Result<(), Error>,
-    mut displace: impl FnMut(&mut [T], &[T]),
+    displace: impl FnMut(&mut [T], &[T]),
 ) -> Result<(), Error> {
     let Workspace {
         actuators,
@@ -65,13 +65,46 @@ pub fn gauss_newton<T: Float>(
         normal,
         step,
     } = workspace;
-    let (mut residual, mut before) = (T::ZERO, T::ZERO);
-    for _ in 0..STEPS {
+    let mut residual = T::ZERO;
+    let find = |pose: &[T], step: &mut [T]| {
         evaluate(pose, actuators, inverse_jacobian)?;
         normal.fill(T::ZERO);
         step.fill(T::ZERO);
         residual = accumulate(measured, actuators, inverse_jacobian, normal, step);
-        solve_positive_definite(normal, step)?;
+        solve_positive_definite(normal, step)
+    };
+    match iterate(pose, step, find, displace)? {
+        true => Ok(()),
+        false => Err(Error::NoConvergence {
+            residual: residual.into(),
+        }),
+    }
+}
+
+/// Takes steps as [`gauss_newton`] does, which `find` writes at once: generated code that has positions and
+/// Jacobian in one and solves the system without a loop. Whether they have led to a pose; if not, which may be for
+/// a pivot that vanishes where the Jacobian is regular, [`gauss_newton`] is asked from the start.
+#[inline]
+pub fn steps<T: Float>(
+    pose: &mut [T],
+    step: &mut [T],
+    find: impl FnMut(&[T], &mut [T]) -> Result<(), Error>,
+    displace: impl FnMut(&mut [T], &[T]),
+) -> bool {
+    iterate(pose, step, find, displace).unwrap_or(false)
+}
+
+/// Takes steps until the next one would be too small. Whether there is such a step.
+#[inline]
+fn iterate<T: Float>(
+    pose: &mut [T],
+    step: &mut [T],
+    mut find: impl FnMut(&[T], &mut [T]) -> Result<(), Error>,
+    mut displace: impl FnMut(&mut [T], &[T]),
+) -> Result<bool, Error> {
+    let mut before = T::ZERO;
+    for _ in 0..STEPS {
+        find(pose, step)?;
         displace(pose, step);
         let largest = step.iter().fold(T::ZERO, |m, s| m.max(s.abs()));
         if !largest.is_finite() {
@@ -80,13 +113,11 @@ pub fn gauss_newton<T: Float>(
         // The next step is largest²/before at most; a tenth of what is tolerated leaves room for those behind it.
         let tolerated = T::of(T::LIMITS.step);
         if largest < tolerated || largest * largest < T::of(0.1) * tolerated * before {
-            return Ok(());
+            return Ok(true);
         }
         before = largest;
     }
-    Err(Error::NoConvergence {
-        residual: residual.into(),
-    })
+    Ok(false)
 }
 
 /// Fits a pose to redundant actuators where a closed form knows it from some of them. Steps that start from the

@@ -18,6 +18,9 @@ const DISPLACE: &str = include_str!("text/displace.c");
 const DISPLACE_ASIDE: &str = include_str!("text/displace_aside.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
 const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
+/// The loop around the steps that `rob_FIND` finds.
+const STEPS: &str = include_str!("text/steps.c");
+const FIT_POSE: &str = include_str!("text/fit_pose.c");
 /// Arguments that are not finite.
 const FORWARD_CHECKS: &str = "
 {
@@ -58,7 +61,7 @@ const FORWARD_START_ASIDE: &str = "    const double still[ROB_DOF] = { 0.0 };
 
 const FORWARD_BY_RULE: &str = "    rob_error error = rob_pose_in_closed_form(actuators, pose);
     if (error != ROB_OK) {
-        error = rob_gauss_newton(actuators, pose);
+        error = rob_FIT(actuators, pose);
     }
 ";
 
@@ -73,16 +76,16 @@ const FORWARD_FROM_RULE: &str = "    double other[ROB_POSE];
         other[i] = pose[i];
         pose[i] = closed;
     }
-    rob_error error = rob_gauss_newton(actuators, pose);
+    rob_error error = rob_FIT(actuators, pose);
     if ((error != ROB_OK) && (is_closed != 0)) {
         for (int i = 0; i < ROB_POSE; i++) {
             pose[i] = other[i];
         }
-        error = rob_gauss_newton(actuators, pose);
+        error = rob_FIT(actuators, pose);
     }
 ";
 
-const FORWARD: &str = "    const rob_error error = rob_gauss_newton(actuators, pose);
+const FORWARD: &str = "    const rob_error error = rob_FIT(actuators, pose);
 ";
 
 const FORWARD_END: &str = "    if (error != ROB_OK) {
@@ -237,9 +240,24 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
         ClosedForm::Start => FORWARD_FROM_RULE,
     };
     let tables = aside.map_or_else(String::new, |own| coordinates(&own));
-    let helpers = text(&[&tables, displace, "\n", GAUSS_NEWTON, "\n"]);
-    let body = text(&[FORWARD_CHECKS, start, found, FORWARD_END]);
+    let (fit, steps) = fitting(model);
+    let helpers = text(&[&tables, displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
+    let found = found.replace("rob_FIT", fit);
+    let body = text(&[FORWARD_CHECKS, start, &found, FORWARD_END]);
     format!("{helpers}{head}{body}")
+}
+
+/// The function that fits a pose, and its text.
+fn fitting(model: &RobotModel) -> (&'static str, String) {
+    let steps = |name: &str, step: &str| STEPS.replace("LOOP", name).replace("FIND", step);
+    let normal = steps("gauss_newton", "normal_step");
+    match model.function(Function::PoseStep, MotionInput::Pose) {
+        None => ("rob_gauss_newton", normal),
+        Some(_) => {
+            let at_once = steps("steps_at_once", "pose_step");
+            ("rob_fit_pose", format!("{normal}\n{at_once}\n{FIT_POSE}"))
+        }
+    }
 }
 
 /// Which of the six coordinates of a platform that moves aside are independent, and which follow.

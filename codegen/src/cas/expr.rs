@@ -148,6 +148,23 @@ impl<'a> Expr<'a> {
         (sign, node)
     }
 
+    /// The square root w of an expression c + w or c - w with a constant c.
+    #[must_use]
+    pub fn root(self) -> Option<Self> {
+        match self.arena.op(self.handle.index()) {
+            Op::Sqrt(_) => Some(self.abs_node()),
+            Op::Add(a, b) | Op::Sub(a, b) => {
+                let variable = match (self.arena.as_constant(a), self.arena.as_constant(b)) {
+                    (Some(_), None) => b,
+                    (None, Some(_)) => a,
+                    _ => return None,
+                };
+                self.with(variable).root()
+            }
+            _ => None,
+        }
+    }
+
     /// The sum of two expressions of which neither is negated.
     fn sum(self, other: Self, negative: bool) -> Self {
         let (fa, a) = self.factor_and_base();

@@ -42,6 +42,7 @@ impl Chosen {
         if self.forward && !mechanism.is_tree() {
             needed.extend([
                 (Function::ActuatorPositions, MotionInput::Pose),
+                (Function::PoseStep, MotionInput::Pose),
                 (Function::InverseJacobian, MotionInput::Pose),
                 (Function::PoseInClosedForm, MotionInput::Actuators),
                 (Function::BlockedError, MotionInput::Pose),

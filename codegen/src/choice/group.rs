@@ -65,6 +65,7 @@ const fn is_kinematic(function: Function) -> bool {
         Function::PoseInClosedForm
             | Function::Joints
             | Function::ActuatorPositions
+            | Function::PoseStep
             | Function::InverseJacobian
             | Function::Jacobian
             | Function::LegsJacobian

@@ -124,6 +124,17 @@ impl<'a> Sheet<'a, '_> {
         ActuatorSystem::LeastSquares(jacobian, factored)
     }
 
+    /// The x with A x = b for a square A whose blocks are small.
+    pub(super) fn solved_by_cofactors(
+        &mut self,
+        rows: &Rows<'a>,
+        right: &[Expr<'a>],
+    ) -> Option<Vec<Expr<'a>>> {
+        let inverse = self.by_cofactors(rows)?;
+        self.guard_platform(&inverse.determinants, ActuatorGroup::All);
+        Some(ActuatorSystem::Square(inverse).velocities(right))
+    }
+
     /// The inverse of a square J whose blocks are small.
     fn by_cofactors(&self, jacobian: &Rows<'a>) -> Option<Inverse<'a>> {
         if jacobian.len() != self.robot.mechanism.dof() {

@@ -142,6 +142,13 @@ impl<'a> LegClosure<'a> {
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
 
+    /// ∂u_i/∂v times a factor that divisors of the row vanish in.
+    #[must_use]
+    pub(super) fn reduced_row(&self, rate: usize, factor: Expr<'a>) -> Vec<Expr<'a>> {
+        let wrench = [self.forces[rate], self.moments[rate]].map(|part| part.scaled(factor));
+        self.directions.components(self.arm, wrench)
+    }
+
     /// Whether the forces s on the u are projected with fewer products as one force at the leg's end
     /// than row by row: not with a moment at the end, nor where few rows take part.
     #[must_use]

@@ -143,6 +143,7 @@ impl<'a> Sheet<'a, '_> {
             Function::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
             Function::Joints => column(self.joint_positions()),
             Function::ActuatorPositions => column(self.actuator_positions()),
+            Function::PoseStep => column(self.pose_step()),
             Function::InverseJacobian => self.robot.inverse_jacobian(),
             Function::Jacobian => self.pseudo_inverse(),
             Function::ClosurePlatformJacobian => self.closure_matrices().0,

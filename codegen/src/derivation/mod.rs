@@ -55,6 +55,7 @@ mod parameter;
 mod parasitic;
 mod path;
 mod platform;
+mod pose_step;
 mod rates;
 mod regressor;
 mod robot;

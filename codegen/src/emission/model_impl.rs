@@ -163,6 +163,19 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             let start = &closed;
         }
     });
+    // Positions and step in one function, where there is one; what it does not find, the loop below may.
+    let at_once = model.function(Function::PoseStep, MotionInput::Pose).map(|_| {
+        quote! {
+            let mut stepped = pose;
+            let find = |pose: &[#kind], step: &mut [#kind]| {
+                ::overact::block::write(&Self::pose_step(::overact::block::array(pose)?, actuators)?, step);
+                ::core::result::Result::Ok(())
+            };
+            if ::overact::forward::steps(&mut stepped, &mut [0.0; Self::DOF], find, #displace) {
+                return ::core::result::Result::Ok(stepped);
+            }
+        }
+    });
     let iterate = quote! {
         ::overact::forward::gauss_newton(
             ::overact::forward::Measured {
@@ -192,6 +205,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             quote! {
                 let closed = Self::pose_in_closed_form(actuators).ok();
                 ::overact::forward::from_closed_form(closed, *start, |mut pose: [#kind; Self::POSE]| {
+                    #at_once
                     #iterate.map(|()| pose)
                 })
             },
@@ -203,6 +217,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
                     return ::core::result::Result::Ok(pose);
                 }
                 let mut pose = *start;
+                #at_once
                 #iterate.map(|()| pose)
             },
         ),
@@ -210,6 +225,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             "",
             quote! {
                 let mut pose = *start;
+                #at_once
                 #iterate.map(|()| pose)
             },
         ),

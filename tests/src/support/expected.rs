@@ -296,6 +296,11 @@ fn kinematic(
         Function::PoseInClosedForm => DMatrix::from_column_slice(state.pose.len(), 1, &state.pose),
         Function::Joints => vector(&state.q),
         Function::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
+        Function::PoseStep => {
+            let measured = DVector::from_column_slice(&sample.actuators);
+            let reached = state.q.select_rows(&mechanism.actuated());
+            pseudo_inverse(&jacobians.inverse) * (measured - reached)
+        }
         Function::InverseJacobian => jacobians.inverse.clone(),
         Function::Jacobian => pseudo_inverse(&jacobians.inverse),
         Function::ClosurePlatformJacobian => jacobians.a_p.clone(),

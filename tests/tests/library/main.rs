@@ -12,6 +12,7 @@ mod forms;
 mod known;
 mod newton_euler;
 mod parasitic;
+mod pose_step;
 mod power;
 mod ranks;
 mod singularities;

@@ -33,57 +33,37 @@ static int rob_solve(double matrix[ROB_DOF][ROB_DOF], double vector[ROB_DOF])
     return is_regular;
 }
 
-/* The pose that fits the actuators best in the sense of least squares, found from the one in `pose`. */
-static rob_error rob_gauss_newton(const double *actuators, double *pose)
+/* The step of least squares from a pose: by normal equations. */
+static rob_error rob_normal_step(const double *pose, const double *actuators, double *step)
 {
-    double before = 0.0;
-    for (int count = 0; count < 20; count++) {
-        double reached[ROB_ACTUATORS];
-        double jacobian[ROB_ACTUATORS * ROB_DOF];
-        double normal[ROB_DOF][ROB_DOF];
-        double step[ROB_DOF];
-        double largest = 0.0;
-        rob_error error = rob_actuator_positions(pose, reached);
-        if (error == ROB_OK) {
-            error = rob_inverse_jacobian(pose, jacobian);
-        }
-        if (error != ROB_OK) {
-            return error;
-        }
-        for (int row = 0; row < ROB_DOF; row++) {
-            step[row] = 0.0;
-            for (int column = 0; column < ROB_DOF; column++) {
-                normal[row][column] = 0.0;
-            }
-        }
-        for (int i = 0; i < ROB_ACTUATORS; i++) {
-            const double *const entries = &jacobian[i * ROB_DOF];
-            double difference = actuators[i] - reached[i];
-            if (rob_actuator_is_revolute[i] != 0) {
-                difference = rob_wrap_angle(difference);
-            }
-            for (int row = 0; row < ROB_DOF; row++) {
-                step[row] += entries[row] * difference;
-                for (int column = row; column < ROB_DOF; column++) {
-                    normal[row][column] += entries[row] * entries[column];
-                }
-            }
-        }
-        if (rob_solve(normal, step) == 0) {
-            return ROB_SINGULAR_ACTUATORS;
-        }
-        rob_displace(pose, step);
-        for (int row = 0; row < ROB_DOF; row++) {
-            largest = (fabs(step[row]) > largest) ? fabs(step[row]) : largest;
-        }
-        if (!isfinite(largest)) {
-            return ROB_NO_CONVERGENCE;
-        }
-        /* The next step is largest * largest / before at most. */
-        if ((largest < LIMIT_STEP) || ((largest * largest) < (0.1 * LIMIT_STEP * before))) {
-            return ROB_OK;
-        }
-        before = largest;
+    double reached[ROB_ACTUATORS];
+    double jacobian[ROB_ACTUATORS * ROB_DOF];
+    double normal[ROB_DOF][ROB_DOF];
+    rob_error error = rob_actuator_positions(pose, reached);
+    if (error == ROB_OK) {
+        error = rob_inverse_jacobian(pose, jacobian);
     }
-    return ROB_NO_CONVERGENCE;
+    if (error != ROB_OK) {
+        return error;
+    }
+    for (int row = 0; row < ROB_DOF; row++) {
+        step[row] = 0.0;
+        for (int column = 0; column < ROB_DOF; column++) {
+            normal[row][column] = 0.0;
+        }
+    }
+    for (int i = 0; i < ROB_ACTUATORS; i++) {
+        const double *const entries = &jacobian[i * ROB_DOF];
+        double difference = actuators[i] - reached[i];
+        if (rob_actuator_is_revolute[i] != 0) {
+            difference = rob_wrap_angle(difference);
+        }
+        for (int row = 0; row < ROB_DOF; row++) {
+            step[row] += entries[row] * difference;
+            for (int column = row; column < ROB_DOF; column++) {
+                normal[row][column] += entries[row] * entries[column];
+            }
+        }
+    }
+    return (rob_solve(normal, step) == 0) ? ROB_SINGULAR_ACTUATORS : ROB_OK;
 }

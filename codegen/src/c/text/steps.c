@@ -1,0 +1,26 @@
+/* The pose that fits the actuators best in the sense of least squares, found from the one in `pose`. */
+static rob_error rob_LOOP(const double *actuators, double *pose)
+{
+    double before = 0.0;
+    for (int count = 0; count < 20; count++) {
+        double step[ROB_DOF];
+        double largest = 0.0;
+        const rob_error error = rob_FIND(pose, actuators, step);
+        if (error != ROB_OK) {
+            return error;
+        }
+        rob_displace(pose, step);
+        for (int row = 0; row < ROB_DOF; row++) {
+            largest = (fabs(step[row]) > largest) ? fabs(step[row]) : largest;
+        }
+        if (!isfinite(largest)) {
+            return ROB_NO_CONVERGENCE;
+        }
+        /* The next step is largest * largest / before at most. */
+        if ((largest < LIMIT_STEP) || ((largest * largest) < (0.1 * LIMIT_STEP * before))) {
+            return ROB_OK;
+        }
+        before = largest;
+    }
+    return ROB_NO_CONVERGENCE;
+}

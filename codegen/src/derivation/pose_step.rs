@@ -1,0 +1,159 @@
+//! The step of forward kinematics: from a pose x towards the one that fits the actuators.
+//!
+//! Gauss and Newton's step is Δx = J⁺ (q - q(x)) with J = J_p^inv, eq. (21). Where there are as many actuators as
+//! coordinates it is Newton's, J Δx = q - q(x), which no normal equations need:
+//!
+//! - The position of an actuator between two points is a length less a constant, q = w - c, and its row of J is
+//!   divided by w. Multiplied by w on both sides, no row is divided by anything.
+//! - The system is solved by blocks of two and three columns, whose rows are those of the largest determinant at
+//!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
+//!   adjugate over determinant: one division a block.
+//!
+//! A determinant may vanish where J is regular. Whoever takes the steps then goes on by normal equations.
+
+use super::elimination::{Rows, adjugate};
+use super::linear::{apply, dot, product};
+use super::sheet::Sheet;
+use crate::cas::Expr;
+use crate::mechanism::numeric::best_conditioned;
+use nalgebra::DMatrix;
+use overact_core::ActuatorGroup;
+
+/// Columns that are taken out together.
+const BLOCK: usize = 2;
+
+/// The largest block: what remains at last is solved at once.
+const LAST: usize = 3;
+
+/// Rows of a linear system, with their right-hand sides.
+type System<'a> = (Rows<'a>, Vec<Expr<'a>>);
+
+impl<'a> Sheet<'a, '_> {
+    /// The step from the pose towards the actuators.
+    pub(super) fn pose_step(&mut self) -> Vec<Expr<'a>> {
+        let positions = self.actuator_positions();
+        let measured = self.input("actuators", positions.len());
+        let pairs = measured.iter().zip(&positions);
+        let differences: Vec<Expr<'a>> = pairs.map(|(m, own)| *m - *own).collect();
+        if positions.len() != self.robot.mechanism.dof() {
+            return self.least_squares(&differences);
+        }
+        let (rows, right) = self.without_divisors(&positions, &differences);
+        if let Some(step) = self.solved_by_cofactors(&rows, &right) {
+            return step;
+        }
+        let mut determinants = Vec::new();
+        match self.by_blocks((rows, right), &mut determinants) {
+            Some(step) => {
+                self.guard_platform(&determinants, ActuatorGroup::All);
+                step
+            }
+            None => self.least_squares(&differences),
+        }
+    }
+
+    /// J Δx = Δq with each row multiplied by the length that it is divided by.
+    fn without_divisors(&self, positions: &[Expr<'a>], differences: &[Expr<'a>]) -> System<'a> {
+        let mechanism = self.robot.mechanism;
+        let (mut rows, mut right) = (self.robot.inverse_jacobian(), differences.to_vec());
+        let joints = mechanism.joints();
+        for (k, index) in mechanism.actuated().into_iter().enumerate() {
+            let of = joints[index];
+            let state = &self.robot.legs[of.leg];
+            let rate = state.rates.own(&[of.joint]);
+            if let (Some(length), Some(closure), Some(&rate)) =
+                (positions[k].root(), &state.closure, rate.first())
+            {
+                let row = closure.reduced_row(rate, length);
+                rows[k] = self.robot.on_independent(row);
+                right[k] = length * right[k];
+            }
+        }
+        (rows, right)
+    }
+
+    /// The solution of A x = b; the determinants that are divided by are added to those given. `None` where a
+    /// block is singular at home.
+    fn by_blocks(
+        &self,
+        (rows, right): System<'a>,
+        determinants: &mut Vec<Expr<'a>>,
+    ) -> Option<Vec<Expr<'a>>> {
+        let size = rows.len();
+        if size <= LAST {
+            return Some(solved(&rows, &right, determinants));
+        }
+        let home = |row: usize, column: usize| self.robot.at_home(rows[row][column]);
+        let chosen = best_conditioned(&DMatrix::from_fn(size, BLOCK, home));
+        if chosen.len() < BLOCK {
+            return None;
+        }
+        let [first, rest] = split((rows, right), &chosen);
+        let [p, q] = halves(&first.0);
+        let [r, s] = halves(&rest.0);
+        let cofactors = adjugate(&p);
+        let column: Vec<Expr<'a>> = cofactors.iter().map(|row| row[0]).collect();
+        let determinant = dot(&p[0], &column);
+        determinants.push(determinant);
+        let reciprocal = determinant.reciprocal();
+        // R P⁻¹
+        let factors: Rows<'a> = product(&r, &cofactors)
+            .into_iter()
+            .map(|row| row.into_iter().map(|entry| entry * reciprocal).collect())
+            .collect();
+        let inner = subtracted(&s, &product(&factors, &q));
+        let taken = apply(&factors, &first.1);
+        let remainder = rest
+            .1
+            .iter()
+            .zip(taken)
+            .map(|(b, taken)| *b - taken)
+            .collect();
+        let y = self.by_blocks((inner, remainder), determinants)?;
+        let taken = apply(&q, &y);
+        let remainder: Vec<Expr<'a>> = first
+            .1
+            .iter()
+            .zip(taken)
+            .map(|(a, taken)| *a - taken)
+            .collect();
+        let x = apply(&cofactors, &remainder).into_iter();
+        Some(x.map(|x| x * reciprocal).chain(y).collect())
+    }
+}
+
+/// The solution of a system of few rows by Cramer's rule.
+fn solved<'a>(
+    rows: &Rows<'a>,
+    right: &[Expr<'a>],
+    determinants: &mut Vec<Expr<'a>>,
+) -> Vec<Expr<'a>> {
+    let cofactors = adjugate(rows);
+    let column: Vec<Expr<'a>> = cofactors.iter().map(|row| row[0]).collect();
+    let determinant = dot(&rows[0], &column);
+    determinants.push(determinant);
+    let reciprocal = determinant.reciprocal();
+    let scaled = apply(&cofactors, right).into_iter();
+    scaled.map(|x| x * reciprocal).collect()
+}
+
+/// The chosen rows of a system, and the others.
+fn split<'a>((rows, right): System<'a>, chosen: &[usize]) -> [System<'a>; 2] {
+    let all = rows.into_iter().zip(right).enumerate();
+    let (first, rest): (Vec<_>, Vec<_>) = all.partition(|(row, _)| chosen.contains(row));
+    [first, rest].map(|part| part.into_iter().map(|(_, equation)| equation).unzip())
+}
+
+/// The columns that are taken out together, and the others.
+fn halves<'a>(rows: &Rows<'a>) -> [Rows<'a>; 2] {
+    let left = rows.iter().map(|row| row[..BLOCK].to_vec());
+    let right = rows.iter().map(|row| row[BLOCK..].to_vec());
+    [left.collect(), right.collect()]
+}
+
+/// A - B
+fn subtracted<'a>(a: &Rows<'a>, b: &Rows<'a>) -> Rows<'a> {
+    let rows = a.iter().zip(b);
+    rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| *a - *b).collect())
+        .collect()
+}
