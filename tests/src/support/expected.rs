@@ -299,7 +299,7 @@ fn kinematic(
         Function::PoseStep => {
             let measured = DVector::from_column_slice(&sample.actuators);
             let reached = state.q.select_rows(&mechanism.actuated());
-            pseudo_inverse(&jacobians.inverse) * (measured - reached)
+            vector(&(pseudo_inverse(&jacobians.inverse) * (measured - reached)))
         }
         Function::InverseJacobian => jacobians.inverse.clone(),
         Function::Jacobian => pseudo_inverse(&jacobians.inverse),

@@ -37,5 +37,66 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
             "{stem}: {step} for {wanted}, off by {off:e}"
         );
     }
+    if sizes.actuators == sizes.dof && sizes.dof > 3 {
+        passes_singular_blocks(stem, compiled)?;
+    }
+    Ok(())
+}
+
+/// Poses at which two actuators' rows are parallel in the first two coordinates, which may be those that the step
+/// divides by, while J_p^inv is regular: forward kinematics finds them all the same.
+fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
+    let sizes = robot.info().sizes;
+    let home = robot.info().home_pose.to_vec();
+    let at = |along: f64| {
+        let mut pose = home.clone();
+        pose[0] += 0.3 * along.cos();
+        pose[1] += 0.3 * along.sin();
+        pose
+    };
+    let mut rows = vec![0.0; sizes.actuators * sizes.dof];
+    let mut found = 0;
+    for (first, second) in (0..sizes.dof).flat_map(|j| (0..j).map(move |i| (i, j))) {
+        let mut cross = |along: f64| -> Result<f64, Failure> {
+            let done = robot.evaluate(Function::InverseJacobian, &[&at(along)], &mut rows);
+            done.map_err(|error| error.error)?;
+            let entry = |row: usize, column: usize| rows[row * sizes.dof + column];
+            Ok(entry(first, 0) * entry(second, 1) - entry(first, 1) * entry(second, 0))
+        };
+        for start in (0..60).map(|k| f64::from(k) * 0.1) {
+            let (mut low, mut high) = (start, start + 0.1);
+            if cross(low)? * cross(high)? > 0.0 {
+                continue;
+            }
+            while high - low > 1e-15 {
+                let middle = f64::midpoint(low, high);
+                if middle <= low || middle >= high {
+                    break;
+                }
+                match cross(low)? * cross(middle)? > 0.0 {
+                    true => low = middle,
+                    false => high = middle,
+                }
+            }
+            returns(stem, robot, &at(low))?;
+            found += 1;
+        }
+    }
+    assert!(found > 5, "{stem}: {found} poses");
+    Ok(())
+}
+
+/// Forward kinematics from beside a pose finds it.
+fn returns(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
+    let mut actuators = vec![0.0; robot.info().sizes.actuators];
+    let done = robot.evaluate(Function::ActuatorPositions, &[pose], &mut actuators);
+    done.map_err(|error| error.error)?;
+    let mut reached = pose.to_vec();
+    reached[0] += 1e-3;
+    reached[2] -= 1e-3;
+    robot.pose_from_actuators(&actuators, &mut reached)?;
+    let pairs = reached.iter().zip(pose);
+    let off = pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    assert!(off < 1e-9, "{stem}: {reached:?} for {pose:?}");
     Ok(())
 }
