@@ -97,13 +97,21 @@ impl Reader<'_, '_, '_> {
             }
             JointKind::Fixed => (angle(theta), length(r), Vec::new()),
         };
+        let quarter = || {
+            let right = Ratio::new(1, 2).map_or(Angle::ZERO, Angle::half_turns);
+            self.spanned(None, right)
+        };
+        let turned = |item: Option<&Item<'_, '_>>| match joint.turned {
+            true => quarter(),
+            false => angle(item),
+        };
         Joint {
             name: joint.name.clone(),
             kind: joint.kind.clone(),
             antecedent: joint.antecedent,
-            gamma: angle(gamma),
+            gamma: turned(gamma),
             b: length(b),
-            alpha: angle(alpha),
+            alpha: turned(alpha),
             d: length(d),
             theta,
             r,

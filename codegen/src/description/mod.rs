@@ -10,6 +10,7 @@
 
 mod actuator_names;
 mod chain;
+mod compound;
 mod controller;
 mod data;
 mod dimension;

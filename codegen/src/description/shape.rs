@@ -1,5 +1,6 @@
 //! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
 
+use super::compound::{WORDS, Word};
 use super::doubt;
 use super::model::{JointKind, Spanned};
 use super::motor::{self, MotorShape};
@@ -31,6 +32,8 @@ pub(super) struct JointShape<'c, 't> {
     pub(super) antecedent: Option<usize>,
     /// γ, b, α, d, θ, r where they are given.
     pub(super) steps: [Option<Item<'c, 't>>; 6],
+    /// Whether γ and α are right angles instead: an axis within a joint of several.
+    pub(super) turned: bool,
     pub(super) actuated: bool,
     pub(super) parameters: Vec<StandardParameter>,
     pub(super) spring: Option<Item<'c, 't>>,
@@ -54,12 +57,6 @@ pub(super) struct EndShape<'c, 't> {
     pub(super) body: Option<Spanned<String>>,
     pub(super) span: Span,
 }
-
-const KINDS: [(&str, JointKind); 3] = [
-    ("revolute", JointKind::Revolute),
-    ("prismatic", JointKind::Prismatic),
-    ("fixed", JointKind::Fixed),
-];
 
 impl JointShape<'_, '_> {
     /// Name of the joint's variable in expressions of the leg: `q1`, `q_elbow`.
@@ -155,9 +152,55 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
         .enumerate()
         .map(|(index, t)| joint_name(t, index))
         .collect();
-    for (index, name) in names.iter().enumerate() {
-        let before = names.get(..index).unwrap_or_default();
-        if before.iter().any(|n| n.value == name.value) {
+    let antecedents: Vec<_> = tables
+        .iter()
+        .enumerate()
+        .map(|(index, table)| antecedent(table, index, &names))
+        .collect();
+    check_order(&tables, &antecedents);
+    let words: Vec<_> = tables.iter().map(word).collect();
+    // The first axis of each table's joint, and behind all.
+    let firsts = words.iter().scan(0, |next, word| {
+        let first = *next;
+        *next += word.value.count();
+        Some(first)
+    });
+    let firsts: Vec<usize> = firsts.collect();
+    let last = |table: usize| {
+        let (first, word) = (firsts.get(table)?, words.get(table)?);
+        Some(first + word.value.count() - 1)
+    };
+    let parts = tables.iter().zip(names).zip(antecedents).zip(&words);
+    let joints = parts
+        .zip(&firsts)
+        .flat_map(|((((table, name), antecedent), word), first)| {
+            let antecedent = antecedent.and_then(|antecedent| last(antecedent.value));
+            word.value
+                .split(joint(table, name, antecedent, word), *first)
+        });
+    let joints: Vec<JointShape<'c, 't>> = joints.collect();
+    check_names(item, &joints);
+    joints
+}
+
+/// The word for a table's joint; a turn, where there is none that is known.
+fn word(table: &Table<'_, '_>) -> Spanned<Word> {
+    let help = "type = \"revolute\", \"prismatic\" or \"fixed\", or a joint of several axes: \"cylindrical\", \"universal\", \"spherical\", \"planar\"";
+    let word = table
+        .require("type", help)
+        .and_then(|item| item.choice(&WORDS));
+    word.unwrap_or(Spanned::new(
+        Word::Simple(JointKind::Revolute),
+        table.span.clone(),
+    ))
+}
+
+/// Reports names that two joints have.
+fn check_names(item: &Item<'_, '_>, joints: &[JointShape<'_, '_>]) {
+    for (index, joint) in joints.iter().enumerate() {
+        let name = &joint.name;
+        let before = joints.get(..index).unwrap_or_default();
+        if before.iter().any(|other| other.name.value == name.value) {
             let message = format!("there are two joints `{}` in this leg", name.value);
             item.context.report(
                 Diagnostic::new(Code::SAME_NAME, message, name.span.clone())
@@ -165,16 +208,6 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
             );
         }
     }
-    let antecedents: Vec<_> = tables
-        .iter()
-        .enumerate()
-        .map(|(index, table)| antecedent(table, index, &names))
-        .collect();
-    check_order(&tables, &antecedents);
-    let parts = tables.iter().zip(names).zip(antecedents);
-    parts
-        .map(|((table, name), antecedent)| joint(table, name, antecedent.map(|a| a.value)))
-        .collect()
 }
 
 fn joint_name(table: &Table<'_, '_>, index: usize) -> Spanned<String> {
@@ -263,27 +296,27 @@ fn joint<'c, 't>(
     table: &Table<'c, 't>,
     name: Spanned<String>,
     antecedent: Option<usize>,
+    word: &Spanned<Word>,
 ) -> JointShape<'c, 't> {
-    let help = "type = \"revolute\", \"prismatic\" or \"fixed\"";
-    let kind = table
-        .require("type", help)
-        .and_then(|item| item.choice(&KINDS));
-    let kind = kind.unwrap_or(Spanned::new(JointKind::Revolute, table.span.clone()));
+    let kind = Spanned::new(word.value.first(), word.span.clone());
     let steps = STEPS.map(|key| table.get(key));
     let actuated_item = table.get("actuated");
     let actuated = actuated_item
         .as_ref()
         .and_then(Item::boolean)
         .unwrap_or(false);
-    if let (Some(item), true, JointKind::Fixed) = (&actuated_item, actuated, kind.value) {
+    let is_simple = matches!(word.value, Word::Simple(_));
+    if let (Some(item), true, true, JointKind::Fixed) =
+        (&actuated_item, actuated, is_simple, kind.value)
+    {
         table
             .context
             .report(item.error(Code::ACTUATED, "a fixed joint cannot be actuated"));
     }
-    if kind.value == JointKind::Fixed {
+    if is_simple && kind.value == JointKind::Fixed {
         doubt::payload(table.context, &name);
     }
-    let owner = Owner::Joint(kind.value);
+    let owner = Owner::Joint(word.value.last());
     let parameters = table
         .get("parameters")
         .and_then(|item| item.parameters(owner));
@@ -295,13 +328,23 @@ fn joint<'c, 't>(
     let load = table.get("friction_load");
     parameters.extend(load.as_ref().map(|_| StandardParameter::Fl));
     let known = table.get("known");
+    let driven = actuated_item.as_ref().filter(|_| actuated);
+    let of_one_axis = [
+        spring.as_ref(),
+        stribeck.as_ref(),
+        load.as_ref(),
+        known.as_ref(),
+    ];
+    word.value
+        .check(table, &[&of_one_axis[..], &[driven]].concat());
     table.finish();
     JointShape {
         name,
         kind,
         antecedent,
         steps,
-        actuated,
+        turned: false,
+        actuated: actuated && is_simple,
         parameters,
         spring,
         known,

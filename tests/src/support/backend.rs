@@ -30,10 +30,9 @@ impl Backend for Evaluated<'_> {
 
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         let found = self.0.functions.iter().find(|f| f.name == function);
-        let program = &found
-            .ok_or_else(|| format!("no function `{function}`"))?
-            .program;
-        let output = evaluate(program, &|name| sample.input(name).ok())?;
+        let found = found.ok_or_else(|| format!("no function `{function}`"))?;
+        let (program, computes) = (&found.program, found.computes);
+        let output = evaluate(program, &|name| sample.argument(computes, name).ok())?;
         Ok(matrix(program, &output))
     }
 }

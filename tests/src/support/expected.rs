@@ -297,7 +297,7 @@ fn kinematic(
         Function::Joints => vector(&state.q),
         Function::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
         Function::PoseStep => {
-            let measured = DVector::from_column_slice(&sample.actuators);
+            let measured = DVector::from_column_slice(&sample.missed);
             let reached = state.q.select_rows(&mechanism.actuated());
             vector(&(pseudo_inverse(&jacobians.inverse) * (measured - reached)))
         }

@@ -6,6 +6,7 @@ use crate::reference::states::{MAX_CONDITION, random_parameters, random_states};
 use crate::reference::units::unitless_condition;
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::DVector;
+use overact::Function;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -54,6 +55,8 @@ pub struct Sample {
     pub fitted: State,
     /// Actuator positions, exact.
     pub actuators: Vec<f64>,
+    /// Actuator positions that the pose misses, as forward kinematics meets them.
+    pub missed: Vec<f64>,
     /// Actuator velocities that no twist gives exactly.
     pub actuator_velocities: Vec<f64>,
     /// Actuator accelerations that no acceleration gives exactly.
@@ -99,9 +102,10 @@ impl Sample {
             all_parameters[at] = drawn[at];
         }
         let shift = random(r, 0.02);
+        let actuators = state.q.select_rows(&actuated);
         Ok(Self {
             fitted,
-            actuators: state.q.select_rows(&actuated).as_slice().to_vec(),
+            actuators: actuators.as_slice().to_vec(),
             actuator_velocities: velocities.as_slice().to_vec(),
             actuator_accelerations: accelerations.as_slice().to_vec(),
             torques: random(n, 10.0).as_slice().to_vec(),
@@ -109,9 +113,22 @@ impl Sample {
             base_parameters: parameters.regrouped(&all_parameters),
             all_parameters,
             preload: random(n - r, 3.0).as_slice().to_vec(),
+            missed: (actuators + random(n, 0.01)).as_slice().to_vec(),
             start: mechanism.motion.displace(&state.pose, &shift),
             state,
         })
+    }
+
+    /// An argument of a function by its name.
+    ///
+    /// # Errors
+    ///
+    /// If there is no argument of the name.
+    pub fn argument(&self, function: Function, name: &str) -> Result<&[f64], Failure> {
+        match (function, name) {
+            (Function::PoseStep, "actuators") => Ok(&self.missed),
+            _ => self.input(name),
+        }
     }
 
     /// An argument by its name.

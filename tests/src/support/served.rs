@@ -20,7 +20,7 @@ impl Served<'_> {
     pub fn evaluate(&self, function: Function, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         let (rows, columns) = function.shape(&self.0.info().sizes);
         let inputs = function.inputs().iter();
-        let inputs = inputs.map(|input| sample.input(input.name()));
+        let inputs = inputs.map(|input| sample.argument(function, input.name()));
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
         let mut output = vec![0.0; rows * columns];
         self.0.evaluate(function, &inputs, &mut output)?;

@@ -119,7 +119,10 @@ impl Contract<'_> {
     fn check(&self, function: Function, is_offered: bool, all: &[Sample]) -> Result<(), Failure> {
         let (rows, columns) = function.shape(&self.sizes);
         let width = rows * columns;
-        let inputs = function.inputs().iter().map(|input| block(*input, all));
+        let inputs = function
+            .inputs()
+            .iter()
+            .map(|input| block(function, *input, all));
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
         let ask = |inputs: &[Vec<f64>], length: usize, case: &str| {
             self.agree(&format!("{function:?}, {case}"), |model| {
@@ -424,8 +427,10 @@ impl Contract<'_> {
 }
 
 /// The rows of an input at all samples.
-fn block(input: Input, all: &[Sample]) -> Result<Vec<f64>, Failure> {
-    let rows = all.iter().map(|sample| sample.input(input.name()));
+fn block(function: Function, input: Input, all: &[Sample]) -> Result<Vec<f64>, Failure> {
+    let rows = all
+        .iter()
+        .map(|sample| sample.argument(function, input.name()));
     Ok(rows.collect::<Result<Vec<_>, Failure>>()?.concat())
 }
 

@@ -1,6 +1,7 @@
 //! Tests of whole descriptions; each kind of error is shown as its reader sees it.
 
 mod chains;
+mod compound;
 mod documentation;
 mod errors;
 mod experiments;
