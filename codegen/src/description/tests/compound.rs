@@ -17,6 +17,7 @@ name = "wrist"
 type = "{word}"
 {keys}
 [[leg.arm.joint]]
+name = "hand"
 type = "prismatic"
 d = 0.2
 [[place]]
@@ -30,8 +31,8 @@ shape = "arm"
 fn written(axes: &str) -> String {
     let text = leg("fixed", "");
     let (before, after) = (
-        text.find("[[leg.arm.joint]]\nname"),
-        text.find("[[leg.arm.joint]]\ntype = \"prismatic\""),
+        text.find("[[leg.arm.joint]]\nname = \"wrist\""),
+        text.find("[[leg.arm.joint]]\nname = \"hand\""),
     );
     let (Some(before), Some(after)) = (before, after) else {
         panic!("no such joints");
@@ -122,8 +123,8 @@ fn what_joints_of_several_axes_cannot_have() {
     let errors = listed(&leg("universal", "actuated = true\nspring = \"q\""));
     let help = "; write the axes of this joint as joints of their own, of type \"revolute\" and \"prismatic\"";
     let expected = [
-        format!("8:1 `actuated` is said of a joint of one axis{help}"),
-        format!("9:1 `spring` is said of a joint of one axis{help}"),
+        format!("8:12 `actuated` is said of a joint of one axis{help}"),
+        format!("9:10 `spring` is said of a joint of one axis{help}"),
     ];
     assert_eq!(errors, expected);
     let errors = listed(&leg("sperical", ""));
@@ -131,10 +132,7 @@ fn what_joints_of_several_axes_cannot_have() {
         errors[0].contains("did you mean `spherical`?"),
         "{errors:?}"
     );
-    let twice = leg("universal", "").replace(
-        "type = \"prismatic\"",
-        "name = \"wrist_1\"\ntype = \"prismatic\"",
-    );
+    let twice = leg("universal", "").replace("name = \"hand\"", "name = \"wrist_1\"");
     let errors = listed(&twice);
     assert!(errors[0].contains("two joints `wrist_1`"), "{errors:?}");
 }
