@@ -13,10 +13,7 @@ use super::{
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     error::Error,
-    kinematics::{
-        Motion,
-        distribution::{least_norm, product},
-    },
+    kinematics::{Motion, distribution::least_torques},
     regression::columns::Reversal,
 };
 
@@ -228,27 +225,20 @@ fn freed(
     jacobians: &[f64],
     (inputs, explained): (&[f64], &Explained),
 ) -> [Vec<f64>; 2] {
-    let r = inputs.len() / motion.samples.max(1);
-    let n = motion.torques.len() / motion.samples.max(1);
-    let mut both = [motion.torques.clone(), motion.torques.clone()];
-    let (mut taken, mut own) = (vec![0.0; r], vec![0.0; n]);
-    for sample in 0..motion.samples {
-        let Some(distribution) = least_norm(slice(jacobians, n * r, sample, 1), r) else {
-            continue;
-        };
-        let lines = sample * r..(sample + 1) * r;
-        let (all, dry) = (&explained.all[lines.clone()], &explained.dry[lines.clone()]);
-        for (number, torques) in both.iter_mut().enumerate() {
-            for (line, taken) in taken.iter_mut().enumerate() {
-                let friction = if number == 0 { 0.0 } else { dry[line] };
-                *taken = inputs[lines.start + line] - all[line] + friction;
-            }
-            product(&distribution, &taken, &mut own);
-            let torques = torques[sample * n..(sample + 1) * n].iter_mut().zip(&own);
-            torques.for_each(|(torque, own)| *torque -= own);
-        }
-    }
-    both
+    let of_sample = |all: &[f64]| all.len() / motion.samples.max(1);
+    let sizes = (of_sample(&motion.torques), of_sample(inputs));
+    let left = inputs.iter().zip(&explained.all).map(|(y, all)| y - all);
+    let left: Vec<f64> = left.collect();
+    let rough = left
+        .iter()
+        .zip(&explained.dry)
+        .map(|(left, dry)| left + dry);
+    let rough: Vec<f64> = rough.collect();
+    let taken = least_torques(jacobians, sizes, [&left, &rough]);
+    taken.map(|taken| {
+        let both = motion.torques.iter().zip(taken);
+        both.map(|(torque, taken)| torque - taken).collect()
+    })
 }
 
 /// The rates ẇ of the columns of dry friction, line by line.
