@@ -4,7 +4,7 @@ use overact::{Function, Input, Model, SampleError};
 use rayon::prelude::*;
 
 /// Samples that are evaluated at once: enough to fill vector units, few enough for the cache.
-pub(crate) const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 128;
 
 /// Evaluates `function` at all samples. `inputs` hold one row per sample, except
 /// [`Input::Parameters`] and [`Input::BaseParameters`].

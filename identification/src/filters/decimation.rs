@@ -134,6 +134,9 @@ impl Decimator {
             return Ok(None);
         };
         check_length(&filter.low_pass, samples)?;
+        let hop = SMALLEST_HOP.max(2 * filter.overlap);
+        // Groups that wait at a time, at most.
+        let waiting = (samples / self.factor).min(hop + filter.overlap);
         Ok(Some(Grouped {
             filter: Arc::clone(filter),
             width: width.max(1),
@@ -141,8 +144,9 @@ impl Decimator {
             skipped: self.first(samples),
             gathered: Vec::new(),
             before: None,
-            pending: Vec::new(),
-            hop: SMALLEST_HOP.max(2 * filter.overlap),
+            pending: vec![0.0; waiting * (PARTS + 1) * width.max(1)],
+            waiting: 0,
+            hop,
             last: Vec::new(),
         }))
     }
@@ -204,8 +208,11 @@ struct Grouped {
     gathered: Vec<f64>,
     /// X of all signals at the start of the gathered rows, once enough rows for its reflection have come.
     before: Option<Vec<f64>>,
-    /// For each group that waits for the backward pass, F and the kept values as far as they are known.
+    /// For each group that waits for the backward pass, F and the kept values as far as they are known, with room
+    /// for as many groups as ever wait.
     pending: Vec<f64>,
+    /// Groups that wait.
+    waiting: usize,
     hop: usize,
     /// The last rows, for the reflection at the end.
     last: Vec<f64>,
@@ -218,12 +225,11 @@ impl Grouped {
             return;
         }
         self.left -= rows.len() / self.width;
-        let reach = (self.filter.low_pass.padding() + 1) * self.width;
-        let tail = rows.len().saturating_sub(reach);
-        self.last.extend_from_slice(&rows[tail..]);
-        let excess = self.last.len().saturating_sub(reach);
-        self.last.drain(..excess);
-
+        // Of what comes, the rows that are among the last of all.
+        let reach = self.filter.low_pass.padding() + 1;
+        let tail = reach.saturating_sub(self.left) * self.width;
+        self.last
+            .extend_from_slice(&rows[rows.len().saturating_sub(tail)..]);
         if self.before.is_some() {
             self.take(rows, kept);
         } else {
@@ -272,8 +278,10 @@ impl Grouped {
             if self.gathered.len() < size {
                 return;
             }
-            let gathered = std::mem::take(&mut self.gathered);
+            let mut gathered = std::mem::take(&mut self.gathered);
             self.take_groups(&gathered, kept);
+            gathered.clear();
+            self.gathered = gathered;
         }
         let whole = rows.len() / size * size;
         self.take_groups(&rows[..whole], kept);
@@ -287,15 +295,14 @@ impl Grouped {
         };
         let filter = Arc::clone(&self.filter);
         let size = (PARTS + 1) * self.width;
-        let full = (self.hop + filter.overlap) * size;
+        let full = self.hop + filter.overlap;
         let mut after = vec![0.0; before.len()];
         for group in rows.chunks_exact(filter.groups.length * self.width) {
-            if self.pending.len() == full {
+            if self.waiting == full {
                 self.pass_backwards(self.hop, None, kept);
             }
-            let start = self.pending.len();
-            self.pending.resize(start + size, 0.0);
-            let told = &mut self.pending[start..];
+            let told = &mut self.pending[self.waiting * size..][..size];
+            self.waiting += 1;
             let group = (group, self.width);
             filter.groups.pass(group, (&before, &mut after), told);
             std::mem::swap(&mut before, &mut after);
@@ -331,8 +338,7 @@ impl Grouped {
             let future = modes.future(&sections(&states, width, signal), &past);
             put(&mut behind, width, signal, &future);
         }
-        let groups = self.pending.len() / ((PARTS + 1) * width);
-        self.pass_backwards(groups, Some(behind), kept);
+        self.pass_backwards(self.waiting, Some(behind), kept);
         kept.extend_from_slice(&rows[..width]);
     }
 
@@ -344,13 +350,16 @@ impl Grouped {
         let mut behind = behind.unwrap_or_else(|| vec![0.0; PARTS * width]);
         let start = kept.len();
         kept.resize(start + finished * width, 0.0);
-        for (index, waiting) in self.pending.chunks_exact(size).enumerate().rev() {
+        let pending = self.pending[..self.waiting * size].chunks_exact(size);
+        for (index, waiting) in pending.enumerate().rev() {
             // Groups behind the finished ones are passed again, from a better start.
             let place = start + index * width;
             let own = (index < finished).then(|| &mut kept[place..place + width]);
             self.filter.groups.pass_backwards(waiting, &mut behind, own);
         }
-        self.pending.drain(..finished * size);
+        let rest = finished * size..self.waiting * size;
+        self.pending.copy_within(rest, 0);
+        self.waiting -= finished;
     }
 }
 

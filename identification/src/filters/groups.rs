@@ -19,6 +19,9 @@ use super::modes::{Mode, Modes};
 /// Modes of the low-pass: half its order.
 const MODES: usize = 4;
 
+/// Signals that go side by side on processors with registers for the sums of twice as many.
+const WIDE: usize = 8;
+
 /// Real and imaginary parts of all modes.
 pub(super) const PARTS: usize = 2 * MODES;
 
@@ -124,13 +127,16 @@ impl Pass<'_> {
     #[inline(always)]
     fn all<S: Simd>(mut self, simd: S) {
         let (lanes, width) = (S::F64_LANES, self.width);
-        let zero = simd.splat_f64s(0.0);
-        let mut sums = vec![zero; self.groups.even.len()];
-        let mut differences = vec![zero; self.groups.odd.len()];
-        for first in (0..width).step_by(lanes) {
+        let mut first = 0;
+        // Where there are registers for that, a weight serves two vectors of signals.
+        while lanes >= WIDE && first + 2 * lanes <= width {
+            self.columns::<S, 2>(simd, first);
+            first += 2 * lanes;
+        }
+        while first < width {
             // The last signals are passed with some before them once more, to the same result.
-            let column = first.min(width - lanes);
-            self.columns(simd, column, (&mut sums, &mut differences));
+            self.columns::<S, 1>(simd, first.min(width - lanes));
+            first += lanes;
         }
     }
 
@@ -162,27 +168,65 @@ impl Pass<'_> {
         }
     }
 
-    /// Passes some signals, from number `column` on.
+    /// Passes `N` vectors of signals, from number `column` on.
     #[inline(always)]
-    fn columns<S: Simd>(
+    fn columns<S: Simd, const N: usize>(&mut self, simd: S, column: usize) {
+        let even = self.sums::<S, N>(simd, column);
+        let odd = self.differences::<S, N>(simd, column);
+        for (place, (even, odd)) in even.iter().zip(&odd).enumerate() {
+            self.put(simd, column + place * S::F64_LANES, (even, odd));
+        }
+    }
+
+    /// Sums of a sample and the one at the same place from the end, each by its weights.
+    #[inline(always)]
+    fn sums<S: Simd, const N: usize>(&self, simd: S, column: usize) -> [[S::f64s; PARTS]; N] {
+        let (groups, width) = (self.groups, self.width);
+        let last = groups.length - 1;
+        let mut sums = [[simd.splat_f64s(0.0); PARTS]; N];
+        for (k, weights) in groups.even.iter().enumerate() {
+            let mut samples = vectors::<S, N>(self.rows, k * width + column);
+            if 2 * k != last {
+                let far = vectors::<S, N>(self.rows, (last - k) * width + column);
+                for place in 0..N {
+                    samples[place] = simd.add_f64s(samples[place], far[place]);
+                }
+            }
+            add::<S, N>(simd, &mut sums, &samples, weights);
+        }
+        sums
+    }
+
+    /// Differences of a sample and the one at the same place from the end, each by its weights.
+    #[inline(always)]
+    fn differences<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        column: usize,
+    ) -> [[S::f64s; PARTS]; N] {
+        let (groups, width) = (self.groups, self.width);
+        let last = groups.length - 1;
+        let mut sums = [[simd.splat_f64s(0.0); PARTS]; N];
+        for (k, weights) in groups.odd.iter().enumerate() {
+            let mut samples = vectors::<S, N>(self.rows, k * width + column);
+            let far = vectors::<S, N>(self.rows, (last - k) * width + column);
+            for place in 0..N {
+                samples[place] = simd.sub_f64s(samples[place], far[place]);
+            }
+            add::<S, N>(simd, &mut sums, &samples, weights);
+        }
+        sums
+    }
+
+    /// Puts what the sums and differences of a vector of signals tell to its places.
+    #[inline(always)]
+    fn put<S: Simd>(
         &mut self,
         simd: S,
         column: usize,
-        (sums, differences): (&mut [S::f64s], &mut [S::f64s]),
+        (even, odd): (&[S::f64s; PARTS], &[S::f64s; PARTS]),
     ) {
         let (groups, width) = (self.groups, self.width);
-        let last = groups.length - 1;
-        for (k, difference) in differences.iter_mut().enumerate() {
-            let near = vector::<S>(self.rows, k * width + column);
-            let far = vector::<S>(self.rows, (last - k) * width + column);
-            sums[k] = simd.add_f64s(near, far);
-            *difference = simd.sub_f64s(near, far);
-        }
-        if let Some(middle) = sums.get_mut(differences.len()) {
-            *middle = vector::<S>(self.rows, last / 2 * width + column);
-        }
-        let even = weighted(simd, sums, &groups.even);
-        let odd = weighted(simd, differences, &groups.odd);
         let direct = simd.splat_f64s(groups.modes.direct);
         let mut kept = simd.mul_f64s(direct, vector::<S>(self.rows, column));
         for mode in 0..MODES {
@@ -206,16 +250,20 @@ impl Pass<'_> {
     }
 }
 
-/// Sums of samples, each by its weights.
+/// Adds samples of `N` vectors of signals, by the weights of all parts, to the sums of these.
 #[inline(always)]
-fn weighted<S: Simd>(simd: S, samples: &[S::f64s], weights: &[[f64; PARTS]]) -> [S::f64s; PARTS] {
-    let mut sums = [simd.splat_f64s(0.0); PARTS];
-    for (sample, weights) in samples.iter().zip(weights) {
-        for (sum, weight) in sums.iter_mut().zip(weights) {
-            *sum = simd.mul_add_e_f64s(simd.splat_f64s(*weight), *sample, *sum);
+fn add<S: Simd, const N: usize>(
+    simd: S,
+    sums: &mut [[S::f64s; PARTS]; N],
+    samples: &[S::f64s; N],
+    weights: &[f64; PARTS],
+) {
+    for part in 0..PARTS {
+        let weight = simd.splat_f64s(weights[part]);
+        for place in 0..N {
+            sums[place][part] = simd.mul_add_e_f64s(weight, samples[place], sums[place][part]);
         }
     }
-    sums
 }
 
 /// A complex number times others, their real and imaginary parts.
@@ -226,6 +274,16 @@ fn times<S: Simd>(simd: S, factor: Mode, [x, y]: [S::f64s; 2]) -> [S::f64s; 2] {
         simd.sub_f64s(simd.mul_f64s(a, x), simd.mul_f64s(b, y)),
         simd.add_f64s(simd.mul_f64s(a, y), simd.mul_f64s(b, x)),
     ]
+}
+
+/// `N` vectors of successive numbers.
+#[inline(always)]
+fn vectors<S: Simd, const N: usize>(values: &[f64], first: usize) -> [S::f64s; N] {
+    let all = S::as_simd_f64s(&values[first..first + N * S::F64_LANES]).0;
+    std::array::from_fn(
+        #[inline(always)]
+        |place| all[place],
+    )
 }
 
 /// Successive numbers.

@@ -82,7 +82,8 @@ pub fn estimate_projection(
     let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
-    let chosen = recommended(system, (&selected, &names), &base, &intervals, settings)?;
+    let told = (&intervals, rest.folds.as_ref());
+    let chosen = recommended(system, (&selected, &names), &base, told, settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,

@@ -2,8 +2,9 @@
 //! vector of the samples' numbers. What one sample needs alone is done by all of them, and taken by that one,
 //! so a sample's result does not depend on its neighbours.
 
-/// Samples side by side.
-pub(super) const LANES: usize = 8;
+/// Samples side by side: so many that loops over them are no short ones, which the compiler would unroll before it
+/// makes vectors of them.
+pub(super) const LANES: usize = 16;
 
 /// A number of each sample.
 pub(super) type Lanes = [f64; LANES];
@@ -14,6 +15,9 @@ const SWEEPS: usize = 30;
 /// Cosine of the angle between two columns that count as orthogonal: by so much of themselves, at most, the singular
 /// values are wrong. A sweep more would be needed for some of the last digits, for rounding is near.
 const ORTHOGONAL: f64 = 1e-13;
+
+/// Cosine before a sweep that makes columns orthogonal: what it leaves is of the size of its square.
+const NEARLY: f64 = 1e-8;
 
 /// Samples side by side, of rows of `size` numbers, filled up with the last one.
 #[inline(always)]
@@ -75,14 +79,14 @@ pub(super) fn solved(matrix: &mut [Lanes], vector: &mut [Lanes], least: f64) -> 
 pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
     let r = columns.len() / n.max(1);
     for _ in 0..SWEEPS {
-        let mut turned = false;
+        let mut goes_on = false;
         for p in 0..r {
             for q in p + 1..r {
                 let (left, right) = columns.split_at_mut(q * n);
-                turned |= turn(&mut left[p * n..(p + 1) * n], &mut right[..n]);
+                goes_on |= turn(&mut left[p * n..(p + 1) * n], &mut right[..n]);
             }
         }
-        if !turned {
+        if !goes_on {
             break;
         }
     }
@@ -104,24 +108,34 @@ pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
     })
 }
 
-/// Turns two columns until they are orthogonal; `false` where they are for all samples.
+/// Turns two columns until they are orthogonal; `false` where they were, or nearly so, for all samples: no sweep is
+/// needed after this one then.
 #[inline(always)]
 fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
     let (a, b, c) = (product(x, x), product(y, y), product(x, y));
     let (mut cosine, mut sine) = ([1.0; LANES], [0.0; LANES]);
-    let mut turning = 0.0;
     for lane in 0..LANES {
-        let (a, b, c) = (a[lane], b[lane], c[lane]);
-        let rests = c.abs() <= ORTHOGONAL * (a * b).sqrt() || c == 0.0;
-        let zeta = (b - a) / (2.0 * c);
-        // Where the square overflows the rotation is none, as it should be.
-        let t = 1.0_f64.copysign(zeta) / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
-        let own = 1.0 / (t * t + 1.0).sqrt();
-        cosine[lane] = if rests { 1.0 } else { own };
-        sine[lane] = if rests { 0.0 } else { own * t };
-        turning += if rests { 0.0 } else { 1.0 };
+        let (twice, difference) = (2.0 * c[lane], b[lane] - a[lane]);
+        let root = (difference * difference + twice * twice).sqrt();
+        let tangent = twice * 1.0_f64.copysign(difference) / (difference.abs() + root);
+        cosine[lane] = 1.0 / (tangent * tangent + 1.0).sqrt();
+        sine[lane] = cosine[lane] * tangent;
     }
-    if turning == 0.0 {
+    let (mut turning, mut far) = ([0.0; LANES], [0.0; LANES]);
+    for lane in 0..LANES {
+        // Squares of cosines: roots and quotients take most of the time. What is no number turns.
+        let (square, size) = (c[lane] * c[lane], a[lane] * b[lane]);
+        let rests = square <= ORTHOGONAL * ORTHOGONAL * size;
+        turning[lane] = if rests { 0.0 } else { 1.0 };
+        far[lane] = if square <= NEARLY * NEARLY * size {
+            0.0
+        } else {
+            1.0
+        };
+        cosine[lane] = if rests { 1.0 } else { cosine[lane] };
+        sine[lane] = if rests { 0.0 } else { sine[lane] };
+    }
+    if turning == [0.0; LANES] {
         return false;
     }
     for (x, y) in x.iter_mut().zip(y) {
@@ -131,12 +145,12 @@ fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
             y[lane] = sine[lane] * a + cosine[lane] * b;
         }
     }
-    true
+    far != [0.0; LANES]
 }
 
 /// The scalar product.
 #[inline(always)]
-fn product(a: &[Lanes], b: &[Lanes]) -> Lanes {
+pub(super) fn product(a: &[Lanes], b: &[Lanes]) -> Lanes {
     let mut sum = [0.0; LANES];
     for (a, b) in a.iter().zip(b) {
         for lane in 0..LANES {
@@ -202,10 +216,14 @@ pub(super) fn invert<const LANES: usize>(
         for lane in 0..LANES {
             is_regular[lane] &= diagonal[lane] != 0.0 && diagonal[lane].is_finite();
         }
+        let mut reciprocal = diagonal;
+        for lane in 0..LANES {
+            reciprocal[lane] = 1.0 / diagonal[lane];
+        }
         for own in [&mut *matrix, &mut *inverse] {
             for value in &mut own[k * r..(k + 1) * r] {
                 for lane in 0..LANES {
-                    value[lane] /= diagonal[lane];
+                    value[lane] *= reciprocal[lane];
                 }
             }
         }

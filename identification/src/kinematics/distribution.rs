@@ -1,6 +1,9 @@
 //! The torques of redundant actuators that give wanted inputs of the platform.
 
-use super::dense::invert;
+use pulp::NullaryFnOnce;
+
+use super::dense::{LANES, invert, lanes};
+use crate::widest::widest;
 
 /// J (Jᵀ J)^-1 of J_p^inv (n x r, row-major), which turns Γ¹ into the torques of least norm; `None` where
 /// the actuators do not determine the platform.
@@ -10,6 +13,82 @@ pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
         return Some(jacobian.to_vec());
     }
     distribution(jacobian, jacobian, r)
+}
+
+/// The torques of least norm that give inputs of the platform, for several inputs at each of successive samples:
+/// samples x n, of J_p^inv (n x r each) and samples x r. Zeros where the actuators do not determine the platform.
+pub(crate) fn least_torques<const N: usize>(
+    jacobians: &[f64],
+    (n, r): (usize, usize),
+    inputs: [&[f64]; N],
+) -> [Vec<f64>; N] {
+    let mut torques = inputs.map(|inputs| vec![0.0; inputs.len() / r * n]);
+    widest(LeastTorques {
+        jacobians,
+        sizes: (n, r),
+        inputs,
+        torques: &mut torques,
+    });
+    torques
+}
+
+/// J (Jᵀ J)^-1 Γ¹ of successive samples.
+struct LeastTorques<'a, const N: usize> {
+    jacobians: &'a [f64],
+    /// n and r.
+    sizes: (usize, usize),
+    inputs: [&'a [f64]; N],
+    torques: &'a mut [Vec<f64>; N],
+}
+
+impl<const N: usize> NullaryFnOnce for LeastTorques<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (n, r) = self.sizes;
+        let (mut normal, mut inverse) = (vec![[0.0; LANES]; r * r], vec![[0.0; LANES]; r * r]);
+        let mut solved = vec![0.0; r];
+        for (group, rows) in self.jacobians.chunks(LANES * n * r).enumerate() {
+            for i in 0..r {
+                for j in 0..r {
+                    normal[i * r + j] = [0.0; LANES];
+                    inverse[i * r + j] = [f64::from(u8::from(i == j)); LANES];
+                }
+            }
+            for entry in 0..n * r {
+                let (actuator, i) = (entry / r, entry % r);
+                let own = lanes(rows, n * r, |jacobian| jacobian[entry]);
+                for j in 0..r {
+                    let other = lanes(rows, n * r, |jacobian| jacobian[actuator * r + j]);
+                    for lane in 0..LANES {
+                        normal[i * r + j][lane] += own[lane] * other[lane];
+                    }
+                }
+            }
+            let is_regular = invert(&mut normal, &mut inverse, r);
+            for (lane, jacobian) in rows.chunks_exact(n * r).enumerate() {
+                if !is_regular[lane] {
+                    continue;
+                }
+                let sample = group * LANES + lane;
+                for (inputs, torques) in self.inputs.iter().zip(&mut *self.torques) {
+                    let inputs = &inputs[sample * r..(sample + 1) * r];
+                    for (i, solved) in solved.iter_mut().enumerate() {
+                        *solved = 0.0;
+                        for (j, input) in inputs.iter().enumerate() {
+                            *solved += inverse[i * r + j][lane] * input;
+                        }
+                    }
+                    product(
+                        jacobian,
+                        &solved,
+                        &mut torques[sample * n..(sample + 1) * n],
+                    );
+                }
+            }
+        }
+    }
 }
 
 /// Whether a matrix of `r` columns is the identity.
@@ -86,7 +165,7 @@ pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Ve
 
 #[cfg(test)]
 mod tests {
-    use super::{least_multipliers, least_norm, product, transposed_product};
+    use super::{least_multipliers, least_norm, least_torques, product, transposed_product};
     use nalgebra::DMatrix;
 
     /// With B = 1 both distributions agree; with any B they satisfy the model, and the multipliers are
@@ -113,6 +192,15 @@ mod tests {
         let found = torques(&least_multipliers(&jacobian, &closure, r).expect("regular"));
         for (a, b) in plain.iter().zip(torques(&same)) {
             assert!((a - b).abs() < 1e-12);
+        }
+        // Behind a singular sample, and twice as large.
+        let both = [vec![0.0; n * r], jacobian.clone()].concat();
+        let inputs = [gamma, gamma].concat();
+        let twice: Vec<f64> = inputs.iter().map(|input| 2.0 * input).collect();
+        let [one, two] = least_torques(&both, (n, r), [&inputs, &twice]);
+        assert_eq!(one[..n], [0.0; 4]);
+        for ((a, b), c) in plain.iter().zip(&one[n..]).zip(&two[n..]) {
+            assert!((a - b).abs() < 1e-12 && (2.0 * a - c).abs() < 1e-12);
         }
         for (a, b) in transposed_product(&jacobian, &found, r).iter().zip(gamma) {
             assert!((a - b).abs() < 1e-11);

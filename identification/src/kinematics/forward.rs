@@ -5,6 +5,9 @@
 //! four anchors around them, where Gauss-Newton needs one or two steps, and all of them step
 //! together: a model evaluates many samples at once much faster than one by one. What does not
 //! converge that way is solved sample by sample, which also tells where a run leaves the workspace.
+//!
+//! Where there is a closed form, all samples start from it: it is in the assembly mode of the home pose, and that of
+//! the run as long as it goes on without a jump.
 
 use overact::{Function, Model, math::wrap_angle};
 use rayon::prelude::*;
@@ -12,7 +15,7 @@ use rayon::prelude::*;
 use super::conditioning::couples;
 use super::motion::outside;
 use super::settling::settle;
-use crate::{data::Log, error::Error};
+use crate::{blocks::evaluate, data::Log, error::Error};
 
 /// Steps in which the first sample is approached from the home pose, should it be far from it.
 const APPROACH_STEPS: usize = 50;
@@ -21,6 +24,9 @@ const APPROACH_STEPS: usize = 50;
 /// little, so that no other assembly mode is near.
 const ANCHOR_SECONDS: f64 = 0.005;
 const ANCHOR_SAMPLES: usize = 32;
+
+/// Closed forms of successive samples that are not farther apart than this (m, rad) are of one assembly mode.
+const NEAR: f64 = 0.01;
 
 /// Samples that step together: enough to fill vector units, few enough for the cache.
 const TOGETHER: usize = 256;
@@ -65,7 +71,8 @@ impl<'a> Forward<'a> {
             self.started = true;
         }
         let together = if self.spacing > 1 {
-            self.together(positions)
+            let closed = self.from_closed_form(positions);
+            closed.or_else(|| self.together(positions))
         } else {
             None
         };
@@ -94,6 +101,28 @@ impl<'a> Forward<'a> {
             poses.extend_from_slice(&pose);
         }
         Ok(poses)
+    }
+
+    /// All poses from those in closed form; `None` where there are none, or where they jump.
+    fn from_closed_form(&self, positions: &[f64]) -> Option<Vec<f64>> {
+        let samples = positions.len() / self.log.actuators();
+        let function = Function::PoseInClosedForm;
+        let poses = evaluate(self.model, function, &[positions], samples).ok()?;
+        let rows = || poses.chunks_exact(self.pose.len());
+        let mut steps = std::iter::once(&self.pose[..]).chain(rows()).zip(rows());
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= NEAR;
+        let goes_on = steps.all(|(from, to)| from.iter().zip(to).all(is_near));
+        goes_on.then(|| self.settled(poses, positions)).flatten()
+    }
+
+    /// Poses that are found from others, which are near, or `None` where that does not converge.
+    fn settled(&self, mut poses: Vec<f64>, positions: &[f64]) -> Option<Vec<f64>> {
+        let (n, size) = (self.log.actuators(), self.pose.len());
+        poses
+            .par_chunks_mut(TOGETHER * size)
+            .zip(positions.par_chunks(TOGETHER * n))
+            .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
+        Some(poses)
     }
 
     /// All poses from anchors, or `None` where that does not converge.
@@ -141,11 +170,7 @@ impl<'a> Forward<'a> {
             }
             poses.extend_from_slice(&found[interval + 1]);
         }
-        poses
-            .par_chunks_mut(TOGETHER * size)
-            .zip(positions.par_chunks(TOGETHER * n))
-            .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
-        Some(poses)
+        self.settled(poses, positions)
     }
 }
 

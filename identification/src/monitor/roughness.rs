@@ -7,7 +7,7 @@ const THIRD_DIFFERENCES: f64 = 20.0;
 #[derive(Debug, Clone)]
 pub(super) struct Roughness {
     /// The last three rows, the newest last.
-    last: Vec<Vec<f64>>,
+    last: Vec<f64>,
     /// Σ of the squares of third differences, and how many there are.
     squares: Vec<f64>,
     count: usize,
@@ -76,23 +76,30 @@ impl Roughness {
         }
     }
 
-    pub(super) fn take(&mut self, row: &[f64]) {
+    /// Takes the next rows.
+    pub(super) fn take(&mut self, rows: &[f64]) {
+        let n = self.squares.len().max(1);
         if self.first.is_empty() {
-            self.first = row.to_vec();
+            self.first = rows.get(..n).unwrap_or_default().to_vec();
         }
-        let first = &self.first;
-        self.twins.retain_mut(|twins| twins.take(row, first));
-        if let [first, second, third] = &self.last[..] {
+        for row in rows.chunks_exact(n) {
+            if self.twins.is_empty() {
+                break;
+            }
+            self.twins.retain_mut(|twins| twins.take(row, &self.first));
+        }
+        self.last.extend_from_slice(rows);
+        for rows in self.last.windows(4 * n).step_by(n) {
+            let (before, fourth) = rows.split_at(3 * n);
             for (i, square) in self.squares.iter_mut().enumerate() {
-                let difference = row[i] - 3.0 * third[i] + 3.0 * second[i] - first[i];
+                let [first, second, third] = [i, n + i, 2 * n + i].map(|place| before[place]);
+                let difference = fourth[i] - 3.0 * third + 3.0 * second - first;
                 *square += difference * difference;
             }
-            self.count += 1;
-            self.last.rotate_left(1);
-            self.last[2].copy_from_slice(row);
-        } else {
-            self.last.push(row.to_vec());
         }
+        let done = (self.last.len() / n).saturating_sub(3);
+        self.count += done;
+        self.last.drain(..done * n);
     }
 
     /// The variance of the noise of each signal, if it is white and the signal smooth.

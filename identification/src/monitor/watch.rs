@@ -77,7 +77,7 @@ struct Position {
     /// Largest |q_k - q_(k-10)|.
     speed: f64,
     /// Since which sample the present value has not changed, and the bounds of all positions in the
-    /// meantime.
+    /// meantime, where it has been there more than once.
     since: usize,
     bounds: Vec<(f64, f64)>,
     /// |q_k - q_(k-10)| when the rest began.
@@ -119,11 +119,13 @@ impl Monitor {
         let known = rows.len() / n;
         rows.extend_from_slice(&samples.positions);
         let all = rows.len() / n;
+        let mut column = Vec::with_capacity(all);
         for (position, actuator) in self.positions.iter_mut().zip(0..) {
+            column.clear();
+            column.extend(rows.iter().skip(actuator).step_by(n));
             for row in known..all {
-                let first = row.saturating_sub(SPEED_SAMPLES + 1);
-                let (before, own) = rows[first * n..(row + 1) * n].split_at((row - first) * n);
-                position.take(actuator, self.samples + row - known, own, before);
+                let sample = self.samples + row - known;
+                position.take(&column[..=row], sample, &rows[..(row + 1) * n]);
             }
         }
         rows.drain(..all.saturating_sub(SPEED_SAMPLES + 1) * n);
@@ -134,8 +136,8 @@ impl Monitor {
             self.marks.take(positions, torques);
         }
         torques().for_each(|torques| self.means.take(torques));
-        rows().for_each(|row| self.roughness[0].take(row));
-        torques().for_each(|row| self.roughness[1].take(row));
+        self.roughness[0].take(&samples.positions);
+        self.roughness[1].take(&samples.torques);
         for ([low, high], actuator) in self.torques.iter_mut().zip(0..) {
             for torque in samples.torques[actuator..].iter().step_by(n) {
                 high.take(*torque);
@@ -414,15 +416,15 @@ impl Monitor {
 }
 
 impl Position {
-    /// Takes the position of the actuator in the row of sample `sample`; `recent` are the rows before, up to
-    /// [`SPEED_SAMPLES`] + 1 of them.
-    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &[f64]) {
-        let (n, position) = (row.len(), row[actuator]);
-        let known = recent.len() / n;
-        let back = |rows: usize| recent[(known - rows) * n + actuator];
+    /// Takes the position of the actuator at sample `sample`, the last of `own`, which are behind each other; `rows`
+    /// are those of all actuators at the same samples.
+    fn take(&mut self, own: &[f64], sample: usize, rows: &[f64]) {
+        let before = own.len() - 1;
+        let position = own[before];
+        let known = before.min(SPEED_SAMPLES + 1);
+        let back = |rows: usize| own[before - rows];
         if known == 0 {
             (self.low, self.high) = (position, position);
-            self.bounds = row.iter().map(|q| (*q, *q)).collect();
             return;
         }
         self.low = self.low.min(position);
@@ -446,19 +448,22 @@ impl Position {
         if step != 0.0 {
             self.end_rest(sample);
             self.since = sample;
-            let bounds = self.bounds.iter_mut().zip(row);
-            bounds.for_each(|(bounds, q)| *bounds = (*q, *q));
             return;
         }
-        for ((low, high), q) in self.bounds.iter_mut().zip(row) {
-            (*low, *high) = (low.min(*q), high.max(*q));
-        }
+        let n = rows.len() / own.len();
+        let (rows, row) = rows.split_at(before * n);
         if self.since + 1 == sample {
+            self.bounds.clear();
+            let before = rows[(before - 1) * n..].iter();
+            self.bounds.extend(before.map(|q| (*q, *q)));
             // The first equal value: how fast was it before?
             self.speed_before = match is_long {
                 true => (position - back(known)).abs(),
                 false => 0.0,
             };
+        }
+        for ((low, high), q) in self.bounds.iter_mut().zip(row) {
+            (*low, *high) = (low.min(*q), high.max(*q));
         }
     }
 

@@ -123,6 +123,12 @@ impl Reversal {
         (velocity.abs() >= self.band).then(|| mean_sign(velocity, self.step(step)))
     }
 
+    /// Whether the velocity has one sign in the whole interval, beyond the dead band.
+    const fn is_steady(self, velocity: f64, step: f64) -> bool {
+        let speed = velocity.abs();
+        speed > 0.0 && speed >= self.band && 2.0 * speed >= self.step(step).abs()
+    }
+
     /// By how much the velocity changes in the interval that counts.
     const fn step(self, step: f64) -> f64 {
         if self.averaged { step } else { 0.0 }
@@ -184,6 +190,8 @@ impl Column {
             };
         }
         let sign = match self.reversal {
+            // As nearly always: the sign is that of the sample throughout the interval.
+            Some(own) if self.direction.is_none() && own.is_steady(velocity, step) => return 1.0,
             Some(reversal) => reversal.sign(velocity, step),
             None => Some(mean_sign(velocity, 0.0)),
         };

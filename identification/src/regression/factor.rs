@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{elimination::residual, update::update};
+use super::{elimination::residual, turned::turned, update::update};
 
 /// Columns whose part outside the others is below this part of their norm are dependent on the
 /// data.
@@ -63,7 +63,12 @@ impl Factor {
     /// Adds equations that come row by row, row-major.
     pub(crate) fn push_rows(&mut self, rows: &[f64]) {
         let size = self.r.ncols();
-        self.push(&DMatrix::from_row_slice(rows.len() / size, size, rows));
+        for rows in rows.chunks(self.worthwhile() * size) {
+            let block = turned(rows, size);
+            self.equations += block.nrows();
+            self.sums += block.row_sum().transpose();
+            self.absorb(block);
+        }
     }
 
     /// Rows that are worth a factorisation.

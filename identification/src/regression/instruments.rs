@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use overact::{Code, Model};
 
-use super::{chunk::Chunk, observation::Observer};
+use super::{chunk::Chunk, observation::Observer, points::Told};
 use crate::{
     data::Log,
     error::{Error, Problem},
@@ -62,13 +62,18 @@ impl<'a> Companion<'a> {
         }
     }
 
-    /// The equations at the samples of some blocks. Without any where they can't be had, which is noted.
-    pub(crate) fn chunks(&mut self, observer: &Observer<'_>, blocks: Range<usize>) -> Vec<Chunk> {
+    /// The equations at the samples of some blocks, with the scales of the platform's coordinates. Without any where they can't be had, which is noted.
+    pub(crate) fn chunks(
+        &mut self,
+        observer: &Observer<'_>,
+        blocks: Range<usize>,
+        scales: &[f64],
+    ) -> Vec<Chunk> {
         let Some(motion) = self.motion.as_ref().filter(|_| self.failed.is_none()) else {
             return Vec::new();
         };
         let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
-        let chunks = observer.chunks_with(motion, blocks, &mut failed, false);
+        let chunks = observer.chunks_with(motion, blocks, &mut failed, (scales, Told::Nothing));
         let error = failed.into_iter().flatten().next();
         match (chunks, error) {
             (Ok(chunks), None) => chunks,

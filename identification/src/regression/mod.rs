@@ -11,7 +11,8 @@
 //! - `points`: what is plotted of the motion;
 //! - `shares`: what the uncertainty of quantities identified beforehand does to estimates;
 //! - `system`: the system (39)-(41) of one projection;
-//! - `elimination`: columns that depend on others.
+//! - `elimination`: columns that depend on others;
+//! - `turned`: rows of numbers as a matrix.
 
 pub(crate) mod chunk;
 pub(crate) mod columns;
@@ -28,6 +29,7 @@ pub(crate) mod shares;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
+mod turned;
 mod update;
 
 pub(crate) use chunk::Chunk;

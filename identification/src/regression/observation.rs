@@ -14,7 +14,7 @@ use super::{
     columns::ColumnSet,
     fold::Phases,
     instruments::Companion,
-    points::Points,
+    points::{Points, Told},
     projection::Projection,
     sink::{LineSink, Plan, observed},
     system::{Observed, singular},
@@ -104,6 +104,7 @@ impl Observer<'_> {
         );
         let mut failed: Vec<Option<Error>> = self.projections.iter().map(|_| None).collect();
         let mut closure_residual = 0.0_f64;
+        let scales = home_scales(self.model);
         while let Some(motion) = motions.next()? {
             closure_residual = closure_residual.max(motion.closure_residual);
             if let Some(own) = &mut companion {
@@ -114,8 +115,10 @@ impl Observer<'_> {
             let together = rayon::current_num_threads().max(1);
             for first in (0..blocks).step_by(together) {
                 let range = first..(first + together).min(blocks);
-                let chunks = self.chunks(&motion, range.clone(), &mut failed)?;
-                let own = companion.as_mut().map(|own| own.chunks(self, range));
+                let told = (&scales[..], Told::Worst(&points));
+                let chunks = self.chunks_with(&motion, range.clone(), &mut failed, told)?;
+                let own = companion.as_mut();
+                let own = own.map(|own| own.chunks(self, range, &scales));
                 let beside = own.unwrap_or_default();
                 sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
                     let (projection, line) = (index / lines, index % lines);
@@ -193,10 +196,11 @@ impl Observer<'_> {
         blocks: Range<usize>,
         failed: &mut [Option<Error>],
     ) -> Result<Vec<Chunk>, Error> {
-        self.chunks_with(motion, blocks, failed, true)
+        let scales = home_scales(self.model);
+        self.chunks_with(motion, blocks, failed, (&scales, Told::Each))
     }
 
-    /// The same, with `conditions` or without.
+    /// The same with the conditions that are to be told, and the scales of the platform's coordinates.
     ///
     /// # Errors
     /// A sample at which the model has no value.
@@ -205,14 +209,12 @@ impl Observer<'_> {
         motion: &Motion,
         blocks: Range<usize>,
         failed: &mut [Option<Error>],
-        conditions: bool,
+        told: (&[f64], Told<'_>),
     ) -> Result<Vec<Chunk>, Error> {
-        let scales = home_scales(self.model);
-        let scales = (&scales[..], conditions);
         let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
         let chunks: Vec<(Chunk, Vec<Option<usize>>)> = blocks
             .into_par_iter()
-            .map(|index| self.chunk(motion, index * BLOCK, scales, &wanted))
+            .map(|index| self.chunk(motion, index * BLOCK, told, &wanted))
             .collect::<Result<_, _>>()?;
         for (projection, failed) in failed.iter_mut().enumerate() {
             let first = chunks.iter().find_map(|(_, singular)| singular[projection]);
@@ -229,7 +231,7 @@ impl Observer<'_> {
         &self,
         motion: &Motion,
         first: usize,
-        (scales, conditions): (&[f64], bool),
+        (scales, told): (&[f64], Told<'_>),
         wanted: &[bool],
     ) -> Result<(Chunk, Vec<Option<usize>>), Error> {
         let info = self.model.info();
@@ -253,9 +255,13 @@ impl Observer<'_> {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
             let choice = KeptActuators::new(kept, scales);
-            if conditions {
-                chunk.conditions.push(choice.conditions(&jacobians, n * r));
-            }
+            chunk.conditions.extend(match told {
+                Told::Nothing => None,
+                Told::Worst(points) if points.is_one(motion, first..first + count) => {
+                    Some(choice.worst_conditions(&jacobians, n * r))
+                }
+                Told::Worst(_) | Told::Each => Some(choice.conditions(&jacobians, n * r)),
+            });
             if *projection == Projection::Platform || !*wanted {
                 chunk.lines.push(Vec::new());
                 singular.push(None);

@@ -1,5 +1,7 @@
 //! What is plotted of a run's motion, and how badly the kept actuators determine the platform along it.
 
+use std::ops::Range;
+
 use overact::Model;
 
 use super::{projection::Projection, sink::Plan, system::PartitionCondition};
@@ -11,6 +13,18 @@ use crate::{
     series::{ConditionSeries, RunFigures},
     settings::Settings,
 };
+
+/// Relative difference of conditions that are one but for rounding.
+const SAME: f64 = 1e-9;
+
+/// Which conditions of the kept actuators are told.
+#[derive(Clone, Copy)]
+pub(crate) enum Told<'a> {
+    Nothing,
+    Each,
+    /// The largest at each point of the plots; others that are smaller may be told as 1.
+    Worst(&'a Points<'a>),
+}
 
 /// Collects what is plotted of a run's motion, and the worst conditions.
 pub(crate) struct Points<'a> {
@@ -78,6 +92,18 @@ impl<'a> Points<'a> {
         }
     }
 
+    /// Whether successive samples belong to one point.
+    pub(super) fn is_one(&self, motion: &Motion, samples: Range<usize>) -> bool {
+        let start = motion.first_sample - self.settings.skip_start;
+        let point = |sample: usize| self.point(start + sample);
+        point(samples.start) == point(samples.end.saturating_sub(1))
+    }
+
+    /// The point that a sample belongs to.
+    fn point(&self, sample: usize) -> usize {
+        (sample.saturating_sub(self.first) / self.stride).min(self.last)
+    }
+
     /// Takes the next samples, with the conditions of each projection block by block.
     pub(crate) fn take(&mut self, motion: &Motion, blocks: &[Vec<Vec<Condition>>]) {
         let poses = motion.pose.chunks_exact(self.figures.pose.len().max(1));
@@ -139,7 +165,9 @@ impl<'a> Points<'a> {
 impl Track {
     /// Takes the condition at a sample, which belongs to a point of the plots.
     fn take(&mut self, sample: usize, point: usize, condition: Condition) {
-        if self.worst.is_none_or(|(worst, _)| condition.number > worst) {
+        // Of samples that are one but for rounding, as where a motion repeats itself, the first one is told.
+        let is_worse = |(worst, _)| condition.number > worst * (1.0 + SAME);
+        if self.worst.is_none_or(is_worse) {
             self.worst = Some((condition.number, sample));
         }
         if condition.determinant != 0.0 {

@@ -3,12 +3,11 @@
 
 use std::ops::Range;
 
-use nalgebra::DMatrix;
-
 use super::{
     factor::Factor,
     fold::{Fold, Phases},
     system::{Observed, Part, PartitionCondition, Stretch},
+    turned::turned,
 };
 use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
 
@@ -62,6 +61,13 @@ impl Plan {
     /// Number of points of the plots.
     pub(crate) const fn points(&self) -> usize {
         self.equations.div_ceil(self.stride)
+    }
+
+    /// Memory for the rows of `width` values of each stretch.
+    fn room(&self, width: usize) -> Vec<Vec<f64>> {
+        let stretches = self.stretches.iter();
+        let room = |range: &Range<usize>| Vec::with_capacity(range.len() * width);
+        stretches.map(room).collect()
     }
 
     /// Of rows of `width` values for every equation, those at the points of the plots.
@@ -133,7 +139,7 @@ impl InstrumentSink {
             decimation,
             rows: Vec::new(),
             factor: Factor::new(2 * parameters),
-            stretches: vec![Vec::new(); plan.stretches.len()],
+            stretches: plan.room(parameters),
         }
     }
 
@@ -191,7 +197,7 @@ impl LineSink {
             rows: Vec::new(),
             factor: Factor::new(parameters),
             parts: Vec::new(),
-            stretches: vec![Vec::new(); plan.stretches.len()],
+            stretches: plan.room(width),
             fold: plan.phases.map(|phases| Fold::new(phases, width)),
             points: Vec::new(),
             standstill,
@@ -308,8 +314,6 @@ pub(crate) fn observed(
         .collect();
     instruments.iter_mut().for_each(InstrumentSink::finish);
     let width = sinks.first().map_or(1, |sink| sink.width);
-    let matrix =
-        |rows: &[f64], width: usize| DMatrix::from_row_slice(rows.len() / width, width, rows);
     let part = |part: usize| Part {
         run,
         lines: sinks
@@ -321,11 +325,11 @@ pub(crate) fn observed(
         run,
         lines: sinks
             .iter()
-            .map(|sink| matrix(&sink.stretches[stretch], width))
+            .map(|sink| turned(&sink.stretches[stretch], width))
             .collect(),
         instruments: instruments
             .iter()
-            .map(|sink| matrix(&sink.stretches[stretch], width - 1))
+            .map(|sink| turned(&sink.stretches[stretch], width - 1))
             .collect(),
     };
     Observed {
@@ -335,7 +339,7 @@ pub(crate) fn observed(
         partition,
         points: sinks
             .iter()
-            .map(|sink| matrix(&sink.points, width))
+            .map(|sink| turned(&sink.points, width))
             .collect(),
         instruments: instruments.into_iter().map(|sink| sink.factor).collect(),
     }

@@ -7,6 +7,7 @@ use overact::Model;
 use super::nearby::Misreading;
 use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
 use crate::{
+    filters::central_differences,
     kinematics::Motion,
     regression::{columns::Reversal, projection::ModelKind},
 };
@@ -199,8 +200,39 @@ impl Sample<'_> {
         }
     }
 
+    /// The entries of suspects' columns of one column each in a line of Γ¹, of their factors.
+    pub(super) fn entries(
+        &self,
+        suspects: &[Suspect],
+        factors: &[f64],
+        line: usize,
+        entries: &mut [f64],
+    ) {
+        let r = self.jacobian.len() / self.torques.len();
+        let of_one = |one: &Suspect, next: &Suspect| match (one, next) {
+            (Suspect::Torque(i, _), Suspect::Torque(k, _)) => i == k,
+            _ => false,
+        };
+        let mut first = 0;
+        // Torques of one actuator stand together.
+        for group in suspects.chunk_by(of_one) {
+            let places = first..first + group.len();
+            first = places.end;
+            let own = entries[places.clone()].iter_mut().zip(&factors[places]);
+            match group {
+                [Suspect::Torque(i, _), ..] => {
+                    let share = self.jacobian[i * r + line];
+                    own.for_each(|(entry, factor)| *entry = share * factor);
+                }
+                _ => own.zip(group).for_each(|((entry, factor), suspect)| {
+                    *entry = self.entry(*suspect, *factor, line);
+                }),
+            }
+        }
+    }
+
     /// The entry of a suspect's column in a line of Γ¹, of its factor.
-    pub(super) fn entry(&self, suspect: Suspect, factor: f64, line: usize) -> f64 {
+    fn entry(&self, suspect: Suspect, factor: f64, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
         let misread = |i: usize, error: Misreading| {
@@ -270,13 +302,8 @@ pub(super) fn moments(
 /// ends.
 pub(super) fn rates(values: &[f64], width: usize, frequency: f64) -> Vec<f64> {
     let samples = values.len() / width.max(1);
-    let last = samples.saturating_sub(1);
-    (0..values.len())
-        .map(|place| {
-            let (sample, column) = (place / width, place % width);
-            let (before, behind) = (sample.saturating_sub(1), (sample + 1).min(last));
-            let span = (behind - before).max(1) as f64;
-            frequency * (values[behind * width + column] - values[before * width + column]) / span
-        })
-        .collect()
+    let run = (width, samples.saturating_sub(1));
+    let mut rates = central_differences(values, 0, 0..samples, run, 1);
+    rates.iter_mut().for_each(|rate| *rate *= frequency);
+    rates
 }

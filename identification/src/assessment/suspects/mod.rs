@@ -33,7 +33,8 @@
 //! - `sections`: products of columns and residual, section by section of the time;
 //! - `pairs`: residuals of actuators that hang together;
 //! - `course`: how residual and motion are spread over the time;
-//! - `pass`: one pass over a run; `scores`: what all runs tell;
+//! - `pass`: what a pass over a run needs; `material`: what rows are made of; `run`: the pass; `scores`: what all
+//!   runs tell;
 //! - `beside`: the columns of the model beside which suspects are tested;
 //! - `scaled`: equations between columns of different units;
 //! - `spread`: how far a score strays by chance;
@@ -48,9 +49,11 @@ mod beside;
 mod columns;
 mod course;
 mod group;
+mod material;
 mod nearby;
 mod pairs;
 mod pass;
+mod run;
 mod scaled;
 mod scores;
 mod sections;

@@ -106,10 +106,11 @@ impl<'a> Nearby<'a> {
                 .map_err(|error| motion.outside(first + error.sample, error.error))?;
             let p = self.base.len();
             for sample in 0..count {
-                all.extend(lines.iter().map(|rows| {
-                    let row = &rows[sample * p..(sample + 1) * p];
-                    row.iter().zip(self.values).map(|(w, x)| w * x).sum::<f64>()
-                }));
+                all.extend(
+                    lines
+                        .iter()
+                        .map(|rows| dot(slice(rows, p, sample, 1), &self.values[..p])),
+                );
             }
         }
         Ok(all)
@@ -124,13 +125,11 @@ impl<'a> Nearby<'a> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
         let mut poses = motion.pose.clone();
-        for (pose, twist) in poses
-            .chunks_exact_mut(sizes.pose)
-            .zip(motion.twist.chunks_exact(r))
-        {
-            let step: Vec<f64> = twist.iter().map(|v| v * INSTANT).collect();
-            self.model.displace(pose, &step);
-        }
+        let steps: Vec<f64> = motion.twist.iter().map(|v| v * INSTANT).collect();
+        let moved = poses.chunks_exact_mut(sizes.pose);
+        moved
+            .zip(steps.chunks_exact(r))
+            .for_each(|(pose, step)| self.model.displace(pose, step));
         let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
         let function = Function::InverseJacobian;
         let later = evaluate(self.model, function, &[&poses], motion.samples).map_err(at)?;
@@ -151,8 +150,9 @@ impl<'a> Nearby<'a> {
     }
 
     /// By how much Y - W χ changes with the part by which the sampling frequency is too high, samples x r.
-    /// The sampling interval changes with it: where in an interval a velocity reverses depends on no clock.
-    pub(super) fn clock(&self, motion: &Motion) -> Result<Vec<f64>, Error> {
+    /// The sampling interval changes with it: where in an interval a velocity reverses depends on no clock. `here` is
+    /// W χ as it is.
+    pub(super) fn clock(&self, motion: &Motion, here: &[f64]) -> Result<Vec<f64>, Error> {
         let faster = 1.0 + STEP;
         let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
         let acceleration: Vec<f64> = motion
@@ -161,8 +161,6 @@ impl<'a> Nearby<'a> {
             .map(|a| a * faster * faster)
             .collect();
         let interval = 1.0 / motion.sampling_frequency;
-        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
-        let here = self.explained(motion, states, interval)?;
         let states: [&[f64]; 3] = [&motion.pose, &twist, &acceleration];
         let there = self.explained(motion, states, interval / faster)?;
         Ok(here
@@ -172,11 +170,13 @@ impl<'a> Nearby<'a> {
             .collect())
     }
 
-    /// By how much Y - W χ changes with each length that is described too large, samples x lengths x r.
+    /// By how much Y - W χ changes with each length that is described too large, samples x lengths x r; `here` is
+    /// W χ as it is.
     pub(super) fn lengths(
         &self,
         motion: &Motion,
         variants: &[Variant<'a>],
+        here: &[f64],
     ) -> Result<Vec<f64>, Error> {
         if variants.is_empty() {
             return Ok(Vec::new());
@@ -184,7 +184,6 @@ impl<'a> Nearby<'a> {
         let r = self.model.info().sizes.dof;
         let interval = 1.0 / motion.sampling_frequency;
         let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
-        let here = self.explained(motion, states, interval)?;
         let mut all = vec![0.0; here.len() * variants.len()];
         for (number, variant) in variants.iter().enumerate() {
             let there = self.of(variant.model).explained(motion, states, interval)?;
@@ -274,4 +273,21 @@ impl<'a> Nearby<'a> {
         }
         Ok(left)
     }
+}
+
+/// Terms of a product that are added up side by side.
+const SIDE_BY_SIDE: usize = 8;
+
+/// The product of two vectors of one length.
+pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let (left, last) = left.as_chunks::<SIDE_BY_SIDE>();
+    let (right, end) = right.as_chunks::<SIDE_BY_SIDE>();
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (left, right) in left.iter().zip(right) {
+        for (sum, (a, b)) in sums.iter_mut().zip(left.iter().zip(right)) {
+            *sum += a * b;
+        }
+    }
+    let rest = last.iter().zip(end).map(|(a, b)| a * b);
+    sums.iter().sum::<f64>() + rest.sum::<f64>()
 }

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 use super::{
     columns::{Layout, Suspect},
     pairs::Pairs,
-    shapes::{Reach, Shape},
+    shapes::{Moment, Reach, Shape},
 };
 use crate::{
     estimation::intervals::scores::cosines,
@@ -64,14 +64,13 @@ pub(super) struct Tempo {
 
 impl Tempo {
     /// Notes velocities and accelerations of all actuators, sample by sample.
-    pub(super) fn take(&mut self, [velocities, accelerations]: [&[f64]; 2]) {
+    pub(super) fn take(&mut self, actuators: &[Moment]) {
         let n = self.velocities.len().max(1);
-        for (sums, values) in [
-            (&mut self.velocities, velocities),
-            (&mut self.accelerations, accelerations),
-        ] {
-            for row in values.chunks_exact(n) {
-                sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += x * x);
+        for row in actuators.chunks_exact(n) {
+            let sums = self.velocities.iter_mut().zip(&mut self.accelerations);
+            for ((velocities, accelerations), own) in sums.zip(row) {
+                *velocities += own.velocity * own.velocity;
+                *accelerations += own.acceleration * own.acceleration;
             }
         }
     }

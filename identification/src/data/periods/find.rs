@@ -144,6 +144,11 @@ impl Motion {
             return f64::INFINITY;
         }
         let stride = (count / pairs).max(1);
+        if stride == 1 {
+            let values = &self.values[..count * self.width];
+            let later = &self.values[lag * self.width..][..values.len()];
+            return 0.5 * squared_distance(values, later) / count as f64;
+        }
         let row = |sample: usize| &self.values[sample * self.width..(sample + 1) * self.width];
         let (mut sum, mut taken) = (0.0, 0);
         for sample in (0..count).step_by(stride) {
@@ -160,4 +165,21 @@ impl Motion {
             .map(|lag| (lag, self.difference(lag, PAIRS)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+/// Differences that are squared side by side.
+const SIDE_BY_SIDE: usize = 16;
+
+/// Σ (a - b)² of two rows of numbers.
+fn squared_distance(first: &[f64], second: &[f64]) -> f64 {
+    let (own, rest) = first.as_chunks::<SIDE_BY_SIDE>();
+    let (other, end) = second.as_chunks::<SIDE_BY_SIDE>();
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (own, other) in own.iter().zip(other) {
+        for (sum, (a, b)) in sums.iter_mut().zip(own.iter().zip(other)) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    let rest = rest.iter().zip(end).map(|(a, b)| (a - b).powi(2));
+    sums.iter().sum::<f64>() + rest.sum::<f64>()
 }

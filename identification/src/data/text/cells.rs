@@ -1,17 +1,6 @@
 //! The numbers of a line without quotation marks, cell by cell as they are read.
 
-/// Bytes that are compared at once.
-const TOGETHER: usize = 32;
-
-/// The first place of a byte.
-pub(super) fn find(byte: u8, bytes: &[u8]) -> Option<usize> {
-    let (whole, rest) = bytes.as_chunks::<TOGETHER>();
-    let has = |part: &[u8; TOGETHER]| part.iter().fold(false, |has, own| has | (*own == byte));
-    let before = whole.iter().position(has).unwrap_or(whole.len());
-    let part = whole.get(before).map_or(rest, |part| &part[..]);
-    let place = part.iter().position(|own| *own == byte);
-    place.map(|place| before * TOGETHER + place)
-}
+use memchr::memchr;
 
 /// Whether a byte stands apart from a number beside it, within its cell.
 fn is_blank(byte: u8) -> bool {
@@ -76,6 +65,12 @@ impl Cells<'_> {
         }
         let (value, length) = fast_float2::parse_partial::<f64, _>(self.rest).ok()?;
         self.rest = &self.rest[length..];
+        // What nearly always follows a number.
+        if self.rest.first() == Some(&self.separator) && self.separator != b' ' {
+            self.rest = &self.rest[1..];
+            self.next = Some(cell + 1);
+            return value.is_finite().then_some(value);
+        }
         let has_blank = self.skip_blanks();
         self.next = match self.rest.first() {
             None => None,
@@ -94,7 +89,7 @@ impl Cells<'_> {
         let end = if self.separator == b' ' {
             self.rest.iter().position(|byte| is_blank(*byte))?
         } else {
-            find(self.separator, self.rest)?
+            memchr(self.separator, self.rest)?
         };
         self.rest = &self.rest[end + 1..];
         if self.separator == b' ' {

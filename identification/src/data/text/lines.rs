@@ -6,7 +6,9 @@ use std::{
     ops::Range,
 };
 
-use super::{BUFFER, cells::find};
+use memchr::{memchr, memchr2};
+
+use super::BUFFER;
 use crate::data::medium::Opened;
 
 /// What has not been passed yet.
@@ -85,7 +87,7 @@ impl Lines {
         };
         let own = &self.buffer[line.clone()];
         let marks = own.iter().filter(|byte| **byte == b'"').count();
-        if marks % 2 == 1 || find(b'\r', own).is_some() {
+        if marks % 2 == 1 || memchr(b'\r', own).is_some() {
             return Ok(None);
         }
         self.pass(end);
@@ -113,7 +115,7 @@ impl Lines {
         loop {
             let left = &self.buffer[self.left.clone()];
             let start = self.left.start;
-            let (line, end) = match find(b'\n', &left[searched..]) {
+            let (line, end) = match memchr(b'\n', &left[searched..]) {
                 Some(at) => (start..start + searched + at, start + searched + at + 1),
                 None if self.is_whole && left.is_empty() => return Ok(None),
                 None if self.is_whole => (self.left.clone(), self.left.end),
@@ -159,5 +161,5 @@ impl Lines {
 
 /// Whether quotation marks or returns stand somewhere.
 fn has_marks(bytes: &[u8]) -> bool {
-    find(b'"', bytes).is_some() || find(b'\r', bytes).is_some()
+    memchr2(b'"', b'\r', bytes).is_some()
 }

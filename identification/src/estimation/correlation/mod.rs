@@ -25,7 +25,7 @@
 //! itself, as a constant column has frequency zero, there is little to divide: there the neighbouring
 //! frequencies speak, as far as they tell more.
 
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::{DMatrix, DMatrixView, Dyn};
 use rayon::prelude::*;
 
 use super::{
@@ -245,7 +245,16 @@ impl Context<'_> {
 
 /// Mᵀ M, as a product of matrices, which is quicker than one of columns.
 pub(crate) fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    matrix.transpose() * matrix
+    let (rows, columns) = matrix.shape();
+    // The same numbers, row by row.
+    let turned = DMatrixView::from_slice_with_strides_generic(
+        matrix.as_slice(),
+        Dyn(columns),
+        Dyn(rows),
+        Dyn(rows),
+        Dyn(1),
+    );
+    turned * matrix
 }
 
 /// The spectra of the residual and the columns of a line.
@@ -342,12 +351,13 @@ pub(crate) fn line_residual(
 fn spectrum(sums: &[f64], count: usize, interval: f64) -> (Vec<f64>, Vec<f64>) {
     let size = sums.len();
     let last = size.saturating_sub(1).max(1);
+    let turn = |step: usize| (std::f64::consts::PI * step as f64 / last as f64).cos();
+    let cosines: Vec<f64> = (0..2 * last).map(turn).collect();
     let density = |k: usize| -> f64 {
         let terms = sums.iter().enumerate().map(|(lag, sum)| {
             let taper = 1.0 - lag as f64 / size as f64;
             let twice = if lag == 0 { 1.0 } else { 2.0 };
-            let angle = std::f64::consts::PI * (k * lag) as f64 / last as f64;
-            twice * taper * sum * angle.cos()
+            twice * taper * sum * cosines[k * lag % cosines.len()]
         });
         2.0 * interval * terms.sum::<f64>() / count.max(1) as f64
     };

@@ -11,6 +11,7 @@ use crate::regression::{
 };
 
 /// The folds of a system.
+#[derive(Debug, Clone)]
 pub(crate) struct HeldOut {
     folds: Vec<Fold>,
     /// ||Y|| of all folds.
@@ -18,6 +19,7 @@ pub(crate) struct HeldOut {
 }
 
 /// Data that are held out, and all others.
+#[derive(Debug, Clone)]
 struct Fold {
     /// Equations of the lines together, unweighted.
     own: Factor,

@@ -104,6 +104,8 @@ pub struct Essential {
     pub stop: String,
     /// The correlation of the residual that all base parameters leave.
     pub(crate) noise: Option<Noise>,
+    /// The parts of the data that are held out in turn.
+    pub(crate) folds: Option<HeldOut>,
 }
 
 /// Eliminates parameters, starting from the estimation `start` of the columns `selected` with
@@ -152,6 +154,7 @@ pub fn essential(
         removals,
         stop,
         noise: walk.noise,
+        folds: walk.folds,
     })
 }
 

@@ -272,48 +272,46 @@ impl<'a> Context<'a> {
 
     /// The equations of a section of a stretch; with G where that is `wanted`.
     fn section(&self, stretch: &Stretch, range: Range<usize>, wanted: bool) -> Section {
-        let q = self.influence().ncols();
-        let mut told = Section {
-            scores: DMatrix::zeros(range.len(), q),
-            gram: DMatrix::zeros(q, q),
-        };
+        let (q, count) = (self.influence().ncols(), range.len());
         let lines = stretch.lines.iter().zip(&self.estimation.weights);
+        // Weighted rows of all lines, one line below the other.
+        let height = count * lines.len();
+        let mut rows = DMatrix::zeros(height, q);
+        let mut scores = DMatrix::zeros(count, q);
+        let mut residual = vec![0.0; count];
         for (number, (line, weight)) in lines.enumerate() {
-            let rows = line.rows(range.start, range.len());
-            let mut own = self.rows(stretch, number, range.clone());
-            own *= *weight;
-            let mut residual = rows.column(rows.ncols() - 1) * *weight;
-            // The columns come before the instruments.
-            for (column, value) in own.column_iter().zip(&self.estimation.values) {
-                residual.axpy(-value, &column, 1.0);
+            let own = number * count..(number + 1) * count;
+            let measured = &column(line, line.ncols() - 1)[range.clone()];
+            scale(&mut residual, measured, *weight);
+            for (place, from) in self.columns(stretch, number).enumerate() {
+                let to = &mut rows.as_mut_slice()[place * height..][own.clone()];
+                scale(to, &from[range.clone()], *weight);
+                // The columns come before the instruments.
+                if let Some(value) = self.estimation.values.get(place) {
+                    let left = residual.iter_mut().zip(to);
+                    left.for_each(|(left, x)| *left -= value * *x);
+                }
             }
-            for (mut scores, column) in told.scores.column_iter_mut().zip(own.column_iter()) {
-                scores.zip_zip_apply(&column, &residual, |sum, x, rest| *sum += x * rest);
-            }
-            if wanted {
-                told.gram.gemm(1.0, &own.transpose(), &own, 1.0);
+            for (place, sums) in scores.as_mut_slice().chunks_exact_mut(count).enumerate() {
+                let from = &rows.as_slice()[place * height..][own.clone()];
+                for ((sum, x), left) in sums.iter_mut().zip(from).zip(&residual) {
+                    *sum += x * left;
+                }
             }
         }
-        told
+        let gram = match wanted {
+            true => square(&rows),
+            false => DMatrix::zeros(0, 0),
+        };
+        Section { scores, gram }
     }
 
-    /// The rows x of a line of a stretch.
-    fn rows(&self, stretch: &Stretch, line: usize, range: Range<usize>) -> DMatrix<f64> {
-        let pick = |rows: &DMatrix<f64>| {
-            let rows = rows.rows(range.start, range.len());
-            rows.select_columns(self.selected)
-        };
-        let columns = pick(&stretch.lines[line]);
-        match (&self.influence, stretch.instruments.get(line)) {
-            (Some(_), Some(instruments)) => {
-                let instruments = pick(instruments);
-                let p = columns.ncols();
-                let mut both = columns.resize_horizontally(2 * p, 0.0);
-                both.columns_mut(p, p).copy_from(&instruments);
-                both
-            }
-            _ => columns,
-        }
+    /// The columns of the rows x of a line of a stretch.
+    fn columns<'s>(&'s self, stretch: &'s Stretch, line: usize) -> impl Iterator<Item = &'s [f64]> {
+        let instruments = self.influence.as_ref();
+        let instruments = instruments.and_then(|_| stretch.instruments.get(line));
+        let all = std::iter::once(&stretch.lines[line]).chain(instruments);
+        all.flat_map(|rows| self.selected.iter().map(|place| column(rows, *place)))
     }
 
     /// R^-T (Σ φ_b X) Mᵀ of each cosine, for the rows X of columns of each section, of which `sections` hold what
@@ -354,13 +352,10 @@ impl<'a> Context<'a> {
                 let spectrum = spectra.row(i);
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
-                let turned = z.transpose();
-                let crossed = &turned * &y;
-                let taken = turned * (noise * &z);
+                // Half of what is symmetric: what is taken, less what is crossed.
+                let half = z.transpose() * (noise * &z * 0.5 - y);
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
-                    spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + taken[(a, b)]
-                        - crossed[(a, b)]
-                        - crossed[(b, a)]
+                    spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + (half[(a, b)] + half[(b, a)])
                 });
                 let count = cosines as f64;
                 let expected = c.trace() / count;
@@ -375,6 +370,19 @@ impl<'a> Context<'a> {
             })
             .collect()
     }
+}
+
+/// A column of a matrix.
+fn column(matrix: &DMatrix<f64>, place: usize) -> &[f64] {
+    let rows = matrix.nrows();
+    &matrix.as_slice()[place * rows..(place + 1) * rows]
+}
+
+/// Puts values times a factor to other places.
+fn scale(to: &mut [f64], from: &[f64], factor: f64) {
+    to.iter_mut()
+        .zip(from)
+        .for_each(|(to, from)| *to = factor * from);
 }
 
 /// Cosines and sections of a stretch; none of one that is too short.

@@ -48,7 +48,7 @@ pub(crate) struct Recommended {
 }
 
 /// Cancels parameters of the base estimation `start` of the columns `selected` with their `names`, of
-/// which `intervals` knows the covariance.
+/// which `intervals` knows the covariance; `folds` are the parts of the data that are held out.
 ///
 /// # Errors
 /// An estimation that is not possible.
@@ -56,11 +56,10 @@ pub(crate) fn recommended(
     system: &System,
     (selected, names): (&[usize], &[String]),
     start: &Estimation,
-    intervals: &Intervals,
+    (intervals, folds): (&Intervals, Option<&HeldOut>),
     settings: &Settings,
 ) -> Result<Recommended, Error> {
-    let folds = HeldOut::new(system, selected, &start.weights);
-    let base = folds.as_ref().and_then(|folds| folds.squares(selected));
+    let base = folds.and_then(|folds| folds.squares(selected));
     let mut here = Recommended {
         selected: selected.to_vec(),
         names: names.to_vec(),
@@ -82,7 +81,7 @@ pub(crate) fn recommended(
             here.stop = format!("without `{name}`, {reason}");
             break;
         }
-        let after = folds.as_ref().and_then(|folds| folds.squares(&left));
+        let after = folds.and_then(|folds| folds.squares(&left));
         if let (Some(base), Some(after)) = (&base, &after)
             && grows(base, after)
         {

@@ -1,0 +1,35 @@
+//! Rows of numbers as a matrix, which holds its columns.
+
+use nalgebra::DMatrix;
+
+/// Rows that are turned together: what is read and written stays in the cache.
+const TOGETHER: usize = 16;
+
+/// The matrix of rows of `width` numbers, which lie one behind the other.
+pub(super) fn turned(rows: &[f64], width: usize) -> DMatrix<f64> {
+    let count = rows.len() / width;
+    let mut matrix = DMatrix::zeros(count, width);
+    for (number, rows) in rows.chunks(TOGETHER * width).enumerate() {
+        let columns = matrix.as_mut_slice().chunks_exact_mut(count);
+        for (place, column) in columns.enumerate() {
+            let from = rows[place..].iter().step_by(width);
+            let to = column[number * TOGETHER..].iter_mut();
+            to.zip(from).for_each(|(to, from)| *to = *from);
+        }
+    }
+    matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turned;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn rows_are_those_of_the_matrix() {
+        for count in [0, 1, 16, 37] {
+            let rows: Vec<f64> = (0..5 * count).map(|k| k as f64).collect();
+            assert_eq!(turned(&rows, 5), DMatrix::from_row_slice(count, 5, &rows));
+        }
+    }
+}
