@@ -10,7 +10,7 @@ use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::joint::link_vector;
 use super::motion_input::MotionInput;
-use super::orientation::{Orientation, constant_rotation, is_whole};
+use super::orientation::{Orientation, constant_rotation, keep_rows};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
@@ -251,15 +251,17 @@ pub(super) fn seats(
 }
 
 /// How many [`seats`] there are to choose from: one for legs of a platform, and for chains that are closed in some
-/// components alone, which are those of the body that they start from.
+/// components alone that others of the axes mix with the rest.
 #[must_use]
 pub(crate) fn seat_count(mechanism: &Mechanism, leg: usize) -> usize {
-    if mechanism.skeleton().is_none() || !is_whole(mechanism, leg) {
+    if mechanism.skeleton().is_none() {
         return 1;
     }
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
-    seats(mechanism, &configuration, leg).map_or(1, |all| all.len())
+    seats(mechanism, &configuration, leg)
+        .filter(|seats| keep_rows(mechanism, leg, &arena, &configuration, seats))
+        .map_or(1, |all| all.len())
 }
 
 impl<'a> Relative<'a> {

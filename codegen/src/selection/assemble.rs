@@ -25,8 +25,9 @@ struct Form {
     selection: Selection,
     /// Before a search.
     operations: usize,
-    /// Whether it is the cheapest one in the formulation that was chosen for the robot.
-    is_robots_best: bool,
+    /// Whether it is searched however many operations it has: the cheapest one in the formulation that was chosen
+    /// for the robot, and one that a short search makes the cheapest.
+    is_worth: bool,
 }
 
 impl Assembler<'_> {
@@ -53,7 +54,7 @@ impl Assembler<'_> {
         let forms = self.forms(function, from)?;
         let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(function) / 100;
-        let worth = |form: &&Form| form.is_robots_best || form.operations <= most;
+        let worth = |form: &&Form| form.is_worth || form.operations <= most;
         let mut best: Option<Program> = None;
         for Form { selection, .. } in forms.iter().filter(worth) {
             let form = Assembler { selection, ..*self }.program(function, from)?;
@@ -71,7 +72,7 @@ impl Assembler<'_> {
             Ok(Form {
                 operations: self.operations(&selection, function, from)?,
                 selection,
-                is_robots_best: false,
+                is_worth: false,
             })
         };
         let mut forms = vec![count(self.selection.clone())?];
@@ -81,11 +82,12 @@ impl Assembler<'_> {
         let Some(start) = forms.iter_mut().min_by_key(|form| form.operations) else {
             return Ok(forms);
         };
-        start.is_robots_best = true;
+        start.is_worth = true;
         if !self.search.is_thorough() {
             return Ok(forms);
         }
         let (least, mut best) = (start.operations, start.clone());
+        let mut trials = vec![best.clone()];
         for change in &formulation::choices_of_function(self.mechanism) {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
@@ -95,16 +97,60 @@ impl Assembler<'_> {
                 ..best.selection.clone()
             });
             // A form in which a leg cannot be written is none to choose.
-            if let Ok(trial) = trial
-                && trial.operations < best.operations
-            {
-                best = trial;
+            let Ok(trial) = trial else { continue };
+            if trial.operations < best.operations {
+                best = trial.clone();
             }
+            trials.push(trial);
         }
         if best.operations < least {
-            forms.push(best);
+            forms.push(best.clone());
+        }
+        if let Some(form) = self.promising(function, from, trials, &best)? {
+            forms.push(form);
         }
         Ok(forms)
+    }
+
+    /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
+    /// short search makes the cheapest; `None` if that is the same.
+    fn promising(
+        &self,
+        function: Function,
+        from: MotionInput,
+        trials: Vec<Form>,
+        best: &Form,
+    ) -> Result<Option<Form>, Underivable> {
+        let found = formulation::promising(trials, best.operations, |form| form.operations);
+        let search = Search::short();
+        let after = |form: &Form| -> Result<usize, Underivable> {
+            let selection = &form.selection;
+            let short = Assembler {
+                selection,
+                search: &search,
+                ..*self
+            };
+            Ok(short.program(function, from)?.cost().operations())
+        };
+        if found.len() < 2 {
+            return Ok(None);
+        }
+        let mut least = after(best)?;
+        let mut cheapest = None;
+        for form in found
+            .into_iter()
+            .filter(|form| form.operations != best.operations)
+        {
+            let operations = after(&form)?;
+            if operations < least {
+                let form = Form {
+                    is_worth: true,
+                    ..form
+                };
+                (least, cheapest) = (operations, Some(form));
+            }
+        }
+        Ok(cheapest)
     }
 
     /// The operations of a function as it is derived.

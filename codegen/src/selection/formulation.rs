@@ -3,9 +3,15 @@
 
 use super::regressor::Regressor;
 use crate::derivation::{Formulation, Selection, Underivable, seat_count, station_count};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{End, Mechanism};
 use crate::parallel;
 use std::collections::BTreeSet;
+
+/// Operations of a form that a search could make the cheapest one, in hundredths of those of the cheapest before it.
+const PROMISING: usize = 106;
+
+/// Of so many such forms a short search tells which is the cheapest.
+const TRIED: usize = 6;
 
 /// The cheapest formulation of the standard regressor from joint angles, with the regressor: for each shape
 /// of legs the axes of its closure, then whether axes that meet share a moment; the plain form where nothing
@@ -22,6 +28,9 @@ pub(super) fn cheapest_formulation(
         seats: vec![0; mechanism.legs.len()],
         meeting: false,
         at_end: false,
+        own_axes: false,
+        weighted: false,
+        lends: false,
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -38,6 +47,19 @@ pub(super) fn cheapest_formulation(
         best.choose(&choice);
     }
     Ok((best.formulation, best.regressor))
+}
+
+/// Those of some trials that a search could make the cheapest, the cheapest first: of each number of operations one.
+pub(super) fn promising<T>(
+    mut trials: Vec<T>,
+    least: usize,
+    operations: impl Fn(&T) -> usize,
+) -> Vec<T> {
+    trials.retain(|trial| operations(trial) <= least * PROMISING / 100);
+    trials.sort_by_key(&operations);
+    trials.dedup_by_key(|trial| operations(trial));
+    trials.truncate(TRIED);
+    trials
 }
 
 /// The best formulation so far.
@@ -73,11 +95,17 @@ pub(super) enum Change {
     /// The axes of the closure of legs of one shape.
     Station(Vec<usize>, usize),
     /// The axes in which their closures see what they end on.
-    Seat(Vec<usize>, usize),
+    Seat(Vec<usize>, usize, usize, bool),
     /// Whether axes that meet share a moment.
     Meeting(bool),
     /// Whether forces of chains go to the skeleton at their ends.
     AtEnd(bool),
+    /// Whether forces on a platform that moves aside meet its coordinates in its own axes.
+    OwnAxes(bool),
+    /// Whether accelerations of the ends of chains are taken less gravity.
+    Weighted(bool),
+    /// Whether legs lend masses at their ends to what they end on.
+    Lends(bool),
 }
 
 impl Change {
@@ -88,13 +116,17 @@ impl Change {
             Self::Station(legs, station) => {
                 legs.iter().for_each(|&l| changed.stations[l] = *station);
             }
-            Self::Seat(legs, seat) => {
+            Self::Seat(legs, seat, station, weighted) => {
                 for &leg in legs {
-                    (changed.seats[leg], changed.stations[leg]) = (*seat, 0);
+                    (changed.seats[leg], changed.stations[leg]) = (*seat, *station);
                 }
+                changed.weighted = *weighted;
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
             Self::AtEnd(at_end) => changed.at_end = *at_end,
+            Self::OwnAxes(own_axes) => changed.own_axes = *own_axes,
+            Self::Weighted(weighted) => changed.weighted = *weighted,
+            Self::Lends(lends) => changed.lends = *lends,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -115,15 +147,23 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
             0..legs.iter().map(|&l| count(mechanism, l)).min().unwrap_or(0)
         };
         let station = |station| Change::Station(legs.clone(), station);
-        let seat = |seat| Change::Seat(legs.clone(), seat);
-        let stations: Vec<Change> = least(station_count).map(station).collect();
-        let seats: Vec<Change> = least(seat_count).map(seat).collect();
-        match seats.len() > 1 {
-            true => vec![stations.clone(), seats, stations],
-            false => vec![stations],
+        let on_ground = legs.iter().all(|&l| mechanism.legs[l].base_body.is_none());
+        let stations = least(station_count);
+        let mut all: Vec<Change> = stations.clone().map(station).collect();
+        for seat in least(seat_count).skip(1) {
+            for weighted in [false, true].into_iter().take(1 + usize::from(on_ground)) {
+                let seated = stations.clone();
+                all.extend(
+                    seated.map(|station| Change::Seat(legs.clone(), seat, station, weighted)),
+                );
+            }
         }
+        vec![all]
     };
     let mut choices: Vec<Vec<Change>> = shapes.into_iter().flat_map(of_shape).collect();
+    if mechanism.is_parasitic() {
+        choices.insert(0, vec![Change::OwnAxes(true)]);
+    }
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
     choices
 }
@@ -131,8 +171,16 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
 /// The changes among which one is chosen after the other for a function on its own.
 pub(super) fn choices_of_function(mechanism: &Mechanism) -> Vec<Change> {
     let mut all: Vec<Change> = choices(mechanism).into_iter().flatten().collect();
+    if mechanism
+        .legs
+        .iter()
+        .any(|leg| matches!(leg.end, Some(End::Point { .. })))
+    {
+        all.push(Change::Lends(true));
+    }
     if mechanism.skeleton().is_some() {
         all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
+        all.extend([Change::Weighted(true), Change::Weighted(false)]);
     }
     all
 }
