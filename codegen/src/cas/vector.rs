@@ -90,6 +90,13 @@ impl<'a> Matrix3<'a> {
         across.all(|(i, j)| self.0[i][j].is_zero())
     }
 
+    /// Whether it exchanges the components of a vector and their signs and does nothing else.
+    #[must_use]
+    pub(crate) fn exchanges(&self) -> bool {
+        let entries = || self.0.iter().flatten().filter(|entry| !entry.is_zero());
+        entries().count() == 3
+    }
+
     /// Rotation about a coordinate axis (0, 1, 2) by the angle of the given cosine and sine.
     #[must_use]
     pub fn rotation(axis: usize, cosine: Expr<'a>, sine: Expr<'a>) -> Self {

@@ -136,17 +136,39 @@ pub(super) struct Seat {
     pub(super) axes: Orientation,
 }
 
-/// How many stations a leg has to choose axes from. Only the base, if the closure is of some components
+/// The stations that a leg has to choose axes from, by number. Only the base, if the closure is of some components
 /// of the end's velocity or angular velocity alone that others of the axes mix with the rest.
 #[must_use]
-pub(crate) fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
+pub(crate) fn station_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
         .map(|frames| Orientation::stations(&frames))
         .filter(|stations| keep_rows(mechanism, leg, &arena, &configuration, stations))
-        .map_or(1, |stations| stations.len())
+        .map_or(vec![0], |stations| {
+            distinct(&stations, &arena, &configuration)
+        })
+}
+
+/// The numbers of those of some axes that are not others of them with names and signs of their axes exchanged,
+/// which cost the same.
+pub(super) fn distinct<'a>(
+    axes: &[Orientation],
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+) -> Vec<usize> {
+    let mut own: Vec<usize> = Vec::new();
+    for (at, one) in axes.iter().enumerate() {
+        let is_known = own.iter().any(|&other| {
+            let turn = one.relative(&axes[other], arena, configuration);
+            turn.is_some_and(|turn| turn.exchanges())
+        });
+        if !is_known {
+            own.push(at);
+        }
+    }
+    own
 }
 
 /// Whether a leg's closure is of the same components in all of some axes: it is of all three of a velocity or of

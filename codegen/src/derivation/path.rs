@@ -10,7 +10,7 @@ use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::joint::link_vector;
 use super::motion_input::MotionInput;
-use super::orientation::{Orientation, constant_rotation, keep_rows};
+use super::orientation::{Orientation, constant_rotation, distinct, keep_rows};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
@@ -250,18 +250,18 @@ pub(super) fn seats(
     Some(all)
 }
 
-/// How many [`seats`] there are to choose from: one for legs of a platform, and for chains that are closed in some
-/// components alone that others of the axes mix with the rest.
+/// The [`seats`] to choose from, by number: the first alone for legs of a platform, and for chains that are closed in
+/// some components alone that others of the axes mix with the rest.
 #[must_use]
-pub(crate) fn seat_count(mechanism: &Mechanism, leg: usize) -> usize {
+pub(crate) fn seat_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     if mechanism.skeleton().is_none() {
-        return 1;
+        return vec![0];
     }
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
     seats(mechanism, &configuration, leg)
         .filter(|seats| keep_rows(mechanism, leg, &arena, &configuration, seats))
-        .map_or(1, |all| all.len())
+        .map_or(vec![0], |seats| distinct(&seats, &arena, &configuration))
 }
 
 impl<'a> Relative<'a> {

@@ -100,11 +100,17 @@ impl SearchLimits {
         }
     }
 
-    /// The limits of a function that a controller calls: what is quick where the search is thorough.
+    /// The limits of a function that a controller calls: more than what is quick where the search is thorough, with a
+    /// short walk.
     #[must_use]
     pub(crate) const fn of_control(self) -> Self {
         if self.is_thorough() {
-            Self::QUICK
+            Self {
+                pair_rounds: 3,
+                whole_nodes: 700,
+                walk_patience: 2,
+                ..Self::QUICK
+            }
         } else {
             self.of_lesser_functions()
         }

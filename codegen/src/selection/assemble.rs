@@ -28,6 +28,8 @@ struct Form {
     /// Whether it is searched however many operations it has: the cheapest one in the formulation that was chosen
     /// for the robot, and one that a short search makes the cheapest.
     is_worth: bool,
+    /// Whether the axes of all legs are the first ones in it, which a short search always looks at.
+    is_plain: bool,
 }
 
 impl Assembler<'_> {
@@ -73,6 +75,7 @@ impl Assembler<'_> {
                 operations: self.operations(&selection, function, from)?,
                 selection,
                 is_worth: false,
+                is_plain: false,
             })
         };
         let mut forms = vec![count(self.selection.clone())?];
@@ -88,7 +91,7 @@ impl Assembler<'_> {
         }
         let (least, mut best) = (start.operations, start.clone());
         let mut trials = vec![best.clone()];
-        for change in &formulation::choices_of_function(self.mechanism) {
+        for change in &formulation::choices_of_function(self.mechanism, function) {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
             };
@@ -97,7 +100,8 @@ impl Assembler<'_> {
                 ..best.selection.clone()
             });
             // A form in which a leg cannot be written is none to choose.
-            let Ok(trial) = trial else { continue };
+            let Ok(mut trial) = trial else { continue };
+            trial.is_plain = change.is_plain();
             if trial.operations < best.operations {
                 best = trial.clone();
             }
@@ -106,22 +110,25 @@ impl Assembler<'_> {
         if best.operations < least {
             forms.push(best.clone());
         }
-        if let Some(form) = self.promising(function, from, trials, &best)? {
-            forms.push(form);
-        }
+        forms.extend(self.promising(function, from, trials, &best)?);
         Ok(forms)
     }
 
     /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
-    /// short search makes the cheapest; `None` if that is the same.
+    /// short search makes the cheapest, and the plain one if it comes near.
     fn promising(
         &self,
         function: Function,
         from: MotionInput,
         trials: Vec<Form>,
         best: &Form,
-    ) -> Result<Option<Form>, Underivable> {
-        let found = formulation::promising(trials, best.operations, |form| form.operations);
+    ) -> Result<Vec<Form>, Underivable> {
+        let (mut plain, others): (Vec<Form>, Vec<Form>) =
+            trials.into_iter().partition(|form| form.is_plain);
+        plain.truncate(1);
+        let mut found = formulation::promising(others, best.operations, |form| form.operations);
+        found.extend(plain);
+        found.retain(|form| form.selection.formulation != best.selection.formulation);
         let search = Search::short();
         let after = |form: &Form| -> Result<usize, Underivable> {
             let selection = &form.selection;
@@ -132,25 +139,30 @@ impl Assembler<'_> {
             };
             Ok(short.program(function, from)?.cost().operations())
         };
-        if found.len() < 2 {
-            return Ok(None);
+        if found.is_empty() {
+            return Ok(Vec::new());
         }
-        let mut least = after(best)?;
-        let mut cheapest = None;
-        for form in found
+        let of_best = after(best)?;
+        let found = found.into_iter().map(|form| Ok((after(&form)?, form)));
+        let found: Vec<(usize, Form)> = found.collect::<Result<_, Underivable>>()?;
+        let least = found.iter().map(|(operations, _)| *operations).min();
+        let least = least.unwrap_or(of_best).min(of_best);
+        let first = found
+            .iter()
+            .position(|(operations, _)| *operations == least);
+        let first = first.filter(|_| least < of_best);
+        let near = least * NEAR / 100;
+        let worth = found
             .into_iter()
-            .filter(|form| form.operations != best.operations)
-        {
-            let operations = after(&form)?;
-            if operations < least {
-                let form = Form {
-                    is_worth: true,
-                    ..form
-                };
-                (least, cheapest) = (operations, Some(form));
-            }
-        }
-        Ok(cheapest)
+            .enumerate()
+            .filter(|(at, (operations, form))| {
+                Some(*at) == first || (form.is_plain && *operations <= near)
+            });
+        let worth = worth.map(|(_, (_, form))| Form {
+            is_worth: true,
+            ..form
+        });
+        Ok(worth.collect())
     }
 
     /// The operations of a function as it is derived.
@@ -174,19 +186,15 @@ impl Assembler<'_> {
                 ..self.selection.clone()
             });
         }
-        let has_forces = matches!(
-            function,
-            Function::Bias(_)
-                | Function::ForwardDynamics(_)
-                | Function::InverseDynamics(_)
-                | Function::InverseDynamicsPreloaded
-        );
-        has_forces.then(|| Selection {
+        formulation::has_forces(function).then(|| Selection {
             dynamics: DynamicsBy::Bodies,
             ..self.selection.clone()
         })
     }
 }
+
+/// Operations after a short search of a plain form that is worth a longer one, in hundredths of the fewest.
+const NEAR: usize = 106;
 
 /// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
 /// replacements take about as much from each form of the dynamics; with and without combined columns they,

@@ -2,9 +2,10 @@
 //! a search, and counted.
 
 use super::regressor::Regressor;
-use crate::derivation::{Formulation, Selection, Underivable, seat_count, station_count};
-use crate::mechanism::{End, Mechanism};
+use crate::derivation::{Formulation, Selection, Underivable, seat_choices, station_choices};
+use crate::mechanism::{End, Leg, Mechanism};
 use crate::parallel;
+use overact_core::Function;
 use std::collections::BTreeSet;
 
 /// Operations of a form that a search could make the cheapest one, in hundredths of those of the cheapest before it.
@@ -92,10 +93,12 @@ impl Best<'_> {
 /// What of a formulation may be written otherwise.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
+    /// The first axes for all legs.
+    Plain,
     /// The axes of the closure of legs of one shape.
     Station(Vec<usize>, usize),
     /// The axes in which their closures see what they end on.
-    Seat(Vec<usize>, usize, usize, bool),
+    Seat(Vec<usize>, usize, usize),
     /// Whether axes that meet share a moment.
     Meeting(bool),
     /// Whether forces of chains go to the skeleton at their ends.
@@ -109,18 +112,28 @@ pub(super) enum Change {
 }
 
 impl Change {
+    /// Whether it takes the first axes for all legs.
+    pub(super) const fn is_plain(&self) -> bool {
+        matches!(self, Self::Plain)
+    }
+
     /// The formulation with the change; `None` where it is written so already.
     pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
         let mut changed = formulation.clone();
         match self {
-            Self::Station(legs, station) => {
-                legs.iter().for_each(|&l| changed.stations[l] = *station);
+            Self::Plain => {
+                changed.stations.fill(0);
+                changed.seats.fill(0);
             }
-            Self::Seat(legs, seat, station, weighted) => {
+            Self::Station(legs, station) => {
+                for &leg in legs {
+                    (changed.seats[leg], changed.stations[leg]) = (0, *station);
+                }
+            }
+            Self::Seat(legs, seat, station) => {
                 for &leg in legs {
                     (changed.seats[leg], changed.stations[leg]) = (*seat, *station);
                 }
-                changed.weighted = *weighted;
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
             Self::AtEnd(at_end) => changed.at_end = *at_end,
@@ -143,46 +156,59 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        let least = |count: fn(&Mechanism, usize) -> usize| {
-            0..legs.iter().map(|&l| count(mechanism, l)).min().unwrap_or(0)
+        // Numbers that are of the same axes in all legs, each that tells others apart in one of them.
+        let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
+            let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
+            all.collect::<BTreeSet<usize>>()
         };
-        let station = |station| Change::Station(legs.clone(), station);
-        let on_ground = legs.iter().all(|&l| mechanism.legs[l].base_body.is_none());
-        let stations = least(station_count);
-        let mut all: Vec<Change> = stations.clone().map(station).collect();
-        for seat in least(seat_count).skip(1) {
-            for weighted in [false, true].into_iter().take(1 + usize::from(on_ground)) {
-                let seated = stations.clone();
-                all.extend(
-                    seated.map(|station| Change::Seat(legs.clone(), seat, station, weighted)),
-                );
-            }
-        }
-        vec![all]
+        let stations = of_all(station_choices);
+        let own = stations
+            .iter()
+            .map(|&station| Change::Station(legs.clone(), station));
+        let seated = of_all(seat_choices).into_iter().skip(1).flat_map(|seat| {
+            let legs = &legs;
+            let stations = stations.iter();
+            stations.map(move |&station| Change::Seat(legs.clone(), seat, station))
+        });
+        own.chain(seated).collect()
     };
-    let mut choices: Vec<Vec<Change>> = shapes.into_iter().flat_map(of_shape).collect();
+    let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
     if mechanism.is_parasitic() {
         choices.insert(0, vec![Change::OwnAxes(true)]);
     }
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
+    if mechanism.skeleton().is_some() {
+        choices.push(vec![Change::Weighted(false), Change::Weighted(true)]);
+    }
     choices
 }
 
 /// The changes among which one is chosen after the other for a function on its own.
-pub(super) fn choices_of_function(mechanism: &Mechanism) -> Vec<Change> {
-    let mut all: Vec<Change> = choices(mechanism).into_iter().flatten().collect();
-    if mechanism
-        .legs
-        .iter()
-        .any(|leg| matches!(leg.end, Some(End::Point { .. })))
-    {
+pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
+    let has_forces = has_forces(function);
+    let has_motion = has_forces || function.columns().is_some();
+    let mut all = vec![Change::Plain];
+    all.extend(choices(mechanism).into_iter().flatten());
+    all.retain(|change| has_motion || !matches!(change, Change::Weighted(_) | Change::OwnAxes(_)));
+    if has_forces && mechanism.skeleton().is_some() {
+        all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
+    }
+    let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
+    if has_forces && mechanism.legs.iter().any(ends_in_point) {
         all.push(Change::Lends(true));
     }
-    if mechanism.skeleton().is_some() {
-        all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
-        all.extend([Change::Weighted(true), Change::Weighted(false)]);
-    }
     all
+}
+
+/// Whether a function adds up forces of given parameters.
+pub(super) const fn has_forces(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Bias(_)
+            | Function::ForwardDynamics(_)
+            | Function::InverseDynamics(_)
+            | Function::InverseDynamicsPreloaded
+    )
 }
 
 /// The regressor in a formulation.
