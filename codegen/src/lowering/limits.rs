@@ -100,20 +100,29 @@ impl SearchLimits {
         }
     }
 
-    /// The limits of a function that a controller calls: more than what is quick where the search is thorough, with a
-    /// short walk.
+    /// The limits of a function that a controller calls: what is quick where the search is thorough.
     #[must_use]
     pub(crate) const fn of_control(self) -> Self {
         if self.is_thorough() {
-            Self {
-                pair_rounds: 3,
-                whole_nodes: 700,
-                walk_patience: 2,
-                ..Self::QUICK
-            }
+            Self::QUICK
         } else {
             self.of_lesser_functions()
         }
+    }
+
+    /// The limits of a second search of such a function, which goes another way: pairs several times, in small
+    /// functions among the nodes of all headings. `None` where one is enough.
+    #[must_use]
+    pub(crate) const fn of_control_again(self) -> Option<Self> {
+        if !self.is_thorough() {
+            return None;
+        }
+        Some(Self {
+            pair_rounds: 3,
+            whole_nodes: Self::THOROUGH.whole_nodes,
+            walk_patience: 2,
+            ..Self::QUICK
+        })
     }
 
     /// Whether they are beyond those of a quick search.

@@ -1,7 +1,7 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
 use super::formulation;
-use super::search::Search;
+use super::search::{Search, is_cheaper};
 use crate::cas::Arena;
 use crate::derivation::{DynamicsBy, JointsBy, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
@@ -204,14 +204,6 @@ const fn worth_a_search(function: Function) -> usize {
         Some(Columns::Standard) => 120,
         _ => 102,
     }
-}
-
-/// Whether a program takes fewer operations than another one and no more sines and roots.
-fn is_cheaper(program: &Program, other: &Program) -> bool {
-    let (of_program, of_other) = (program.cost(), other.cost());
-    of_program.operations() < of_other.operations()
-        && of_program.trigonometric_pairs <= of_other.trigonometric_pairs
-        && of_program.square_roots <= of_other.square_roots
 }
 
 /// How the joints follow from the pose: by rule, if one fits every leg.

@@ -200,6 +200,26 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
     all
 }
 
+/// The formulations of a function that one change makes of that of a robot, and those that all changes so far make
+/// together.
+#[must_use]
+pub fn formulations(
+    mechanism: &Mechanism,
+    function: Function,
+    of: &Formulation,
+) -> Vec<Formulation> {
+    let mut together = of.clone();
+    let mut all = Vec::new();
+    for change in choices_of_function(mechanism, function) {
+        all.extend(change.of(of));
+        together = change.of(&together).unwrap_or(together);
+        if !all.contains(&together) {
+            all.push(together.clone());
+        }
+    }
+    all
+}
+
 /// Whether a function adds up forces of given parameters.
 pub(super) const fn has_forces(function: Function) -> bool {
     matches!(
