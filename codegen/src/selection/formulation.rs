@@ -156,7 +156,7 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        // Numbers that are of the same axes in all legs, each that tells others apart in one of them.
+        // A number counts if it stands for axes of its own in one of the legs.
         let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
             let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
             all.collect::<BTreeSet<usize>>()
