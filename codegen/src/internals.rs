@@ -4,4 +4,4 @@
 pub use crate::cas::{Arena, Stream};
 pub use crate::derivation::{Derived, derive};
 pub use crate::mechanism::states::{State, pose_towards, random_states};
-pub use crate::selection::{Assembler, Search, sample};
+pub use crate::selection::{Assembler, Search, formulations, sample};

@@ -82,6 +82,21 @@ impl<'a> Matrix3<'a> {
         Self(std::array::from_fn(|i| Vector3::unit(arena, i).0))
     }
 
+    /// Whether it mixes these components of a vector among themselves alone, and the others among themselves.
+    #[must_use]
+    pub(crate) fn keeps(&self, own: &[usize]) -> bool {
+        let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        let mut across = pairs.filter(|(i, j)| own.contains(i) != own.contains(j));
+        across.all(|(i, j)| self.0[i][j].is_zero())
+    }
+
+    /// Whether it exchanges the components of a vector and their signs and does nothing else.
+    #[must_use]
+    pub(crate) fn exchanges(&self) -> bool {
+        let entries = || self.0.iter().flatten().filter(|entry| !entry.is_zero());
+        entries().count() == 3
+    }
+
     /// Rotation about a coordinate axis (0, 1, 2) by the angle of the given cosine and sine.
     #[must_use]
     pub fn rotation(axis: usize, cosine: Expr<'a>, sine: Expr<'a>) -> Self {

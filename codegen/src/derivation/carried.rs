@@ -142,6 +142,38 @@ impl<'a> CarriedBody<'a> {
         [force, turned + axes * moment]
     }
 
+    /// The generalised force of a unit of an inertial parameter on each of some coordinates, of which it is told how
+    /// they move the platform: velocity of its origin and angular velocity. Moments are taken in the body's own
+    /// axes, where a second moment has few components, and meet the angular velocities there.
+    pub(super) fn on_partials(
+        &self,
+        arena: &'a Arena,
+        parameter: StandardParameter,
+        partials: &[[Vector3<'a>; 2]],
+    ) -> Vec<Expr<'a>> {
+        use StandardParameter as P;
+        let into = |vector: Vector3<'a>| {
+            let on_platform = self.platform.transposed() * vector;
+            self.mounted.transposed() * on_platform
+        };
+        let on = |[velocity, turning]: &[Vector3<'a>; 2]| {
+            let along = |force: Vector3<'a>| force.dot(*velocity + turning.cross(self.arm));
+            let first = |k: usize| {
+                let lifted = into(self.acceleration).cross(into(*turning));
+                along(self.centripetal.column(k)) + lifted.0[k]
+            };
+            match parameter {
+                P::M => along(self.acceleration),
+                P::Mx => first(0),
+                P::My => first(1),
+                P::Mz => first(2),
+                P::Ia | P::Fv | P::Fs | P::Off => arena.zero(),
+                _ => second_moment(arena, parameter, self.omega, self.alpha).dot(into(*turning)),
+            }
+        };
+        partials.iter().map(on).collect()
+    }
+
     /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.
     #[must_use]
     pub fn project(&self, twist: &[TwistCoordinate], wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {

@@ -154,6 +154,16 @@ impl<'a> Chain<'_, 'a> {
         self.leg.joints[j].antecedent
     }
 
+    /// What the leg ends on.
+    pub(super) const fn end(&self) -> Option<&End> {
+        self.leg.end.as_ref()
+    }
+
+    /// A point of a joint's frame in the antecedent's.
+    pub(super) fn before(&self, j: usize, point: Vector3<'a>) -> Vector3<'a> {
+        self.links[j].at + self.links[j].turn.back(point)
+    }
+
     /// What an inertia in a joint's frame, which its motion leaves as it is, adds to the antecedent's.
     pub(super) fn moved_onto(&self, of: &Inertia<'a>, onto: &Inertia<'a>, j: usize) -> Inertia<'a> {
         let link = &self.links[j];

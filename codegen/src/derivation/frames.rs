@@ -37,6 +37,8 @@ pub struct LegFrames<'a> {
     pub frames: Vec<Frame<'a>>,
     /// The orientation of the axes in the robot's base frame, or in those that the closure is seen in.
     pub axes: Matrix3<'a>,
+    /// The axes in the robot's base frame.
+    pub(super) orientation: Orientation,
 }
 
 impl<'a> LegFrames<'a> {
@@ -83,8 +85,11 @@ impl<'a> LegFrames<'a> {
             });
         }
         let seen_from = seat.map_or_else(Orientation::default, |seat| seat.axes.clone());
-        let axes = axes.relative(&seen_from, arena, configuration)?;
-        Some(Self { frames, axes })
+        Some(Self {
+            frames,
+            axes: axes.relative(&seen_from, arena, configuration)?,
+            orientation: axes,
+        })
     }
 
     /// The vector from the origin of joint `index` to that of the last joint, along the links.

@@ -29,6 +29,14 @@ impl<'a> Inertia<'a> {
         }
     }
 
+    /// Of a mass in the origin.
+    pub(super) fn point(mass: Expr<'a>) -> Self {
+        Self {
+            mass,
+            ..Self::zero(mass.arena())
+        }
+    }
+
     /// Of the inertial parameters that are a body's own, with their values; parameters of two bodies that
     /// are one add up.
     pub(super) fn of(

@@ -1,11 +1,14 @@
 //! What a derivation knows of a leg: frames, rates, closure.
 
+use super::bias::{BiasTerm, end_bias};
 use super::centres::Centre;
 use super::closure::LegClosure;
 use super::elimination::Rows;
 use super::frames::LegFrames;
-use super::platform::PlatformPose;
+use super::platform::{PlatformMotion, PlatformPose};
 use super::rates::Rates;
+use crate::cas::{Arena, Expr, Vector3};
+use crate::mechanism::Leg;
 
 /// A leg in a derivation.
 #[derive(Debug)]
@@ -22,7 +25,34 @@ pub struct LegState<'a> {
     pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
+    /// Acceleration of the ground less gravity, in the axes in which the closure sees what the leg ends on and in
+    /// those of the leg, where the end's acceleration is taken so.
+    pub(super) ground: Option<[Vector3<'a>; 2]>,
     /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body those of the leg follow that
     /// carries it, whose quasi-velocities move its bodies, too.
     pub rows: Rows<'a>,
+}
+
+impl<'a> LegState<'a> {
+    /// The motion of what the leg ends on, less gravity where it is taken so.
+    pub(super) fn less_gravity(&self, end: PlatformMotion<'a>) -> PlatformMotion<'a> {
+        match self.ground {
+            Some([ground, _]) => PlatformMotion {
+                acceleration: end.acceleration + ground,
+                ..end
+            },
+            None => end,
+        }
+    }
+
+    /// The acceleration of the leg's end at u̇ = 0, less gravity where that of what it ends on is.
+    pub(super) fn bias(&self, arena: &'a Arena, leg: &Leg, u: &[Expr<'a>]) -> Vec<BiasTerm<'a>> {
+        let mut terms = end_bias(arena, leg, &self.frames, &self.rates, u);
+        terms.extend(self.ground.map(|[_, ground]| BiasTerm {
+            scalar: arena.one(),
+            linear: ground,
+            angular: Vector3::zero(arena),
+        }));
+        terms
+    }
 }

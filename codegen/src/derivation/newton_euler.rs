@@ -18,8 +18,8 @@ use super::parameter::BodyParameter;
 use super::regressor::add;
 use super::robot::Robot;
 use super::tree_masses::{on_carrier, wrench_on_carrier};
-use crate::cas::{Arena, Expr, Vector3};
-use crate::mechanism::{JointKind, Leg};
+use crate::cas::{Arena, Expr, Number, Vector3};
+use crate::mechanism::{End, JointKind, Leg};
 
 impl<'a> Robot<'a> {
     /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
@@ -33,7 +33,8 @@ impl<'a> Robot<'a> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
         let mut free = vec![self.arena.zero(); self.free.len()];
-        let of_legs = self.forces_of_legs(motion, values)?.into_iter();
+        let mut hung = Hung::nothing(self.arena, &self.mechanism.legs);
+        let of_legs = self.forces_of_legs(motion, values, &mut hung)?.into_iter();
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
             self.arena.enter(&leg.name);
             for (joint, force) in leg.independent().zip(&forces) {
@@ -56,7 +57,8 @@ impl<'a> Robot<'a> {
         }
         self.arena.enter("platform");
         if let Some(body) = &motion.platform {
-            let wrench = body.wrench(&self.platform_inertia(values));
+            let whole = with(&hung.on_platform, &self.platform_inertia(values));
+            let wrench = body.wrench(&whole);
             self.name_wrench(wrench, "", "platform");
             let on_twist = body.project(&self.free, wrench);
             for (coordinate, force) in self.free.iter().zip(&on_twist) {
@@ -80,17 +82,18 @@ impl<'a> Robot<'a> {
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
+        hung: &mut Hung<'a>,
     ) -> Option<Vec<Vec<Expr<'a>>>> {
         let legs = &self.mechanism.legs;
         let mut order: Vec<usize> = (0..legs.len()).collect();
-        if legs.iter().any(|leg| leg.base_body.is_some()) {
+        let meets_another = |leg: &Leg| leg.base_body.is_some() || leg.end_body.is_some();
+        if legs.iter().any(meets_another) {
             order.reverse();
         }
-        let mut hung = Hung::nothing(self.arena, legs);
         let mut all = vec![Vec::new(); legs.len()];
         for index in order {
             self.arena.enter(&legs[index].name);
-            all[index] = self.summed_leg_forces(motion, values, index, &mut hung)?;
+            all[index] = self.summed_leg_forces(motion, values, index, hung)?;
         }
         Some(all)
     }
@@ -107,6 +110,11 @@ impl<'a> Robot<'a> {
         let chain = self.chain(index, values)?;
         let mut bodies = chain.bodies();
         hung.add_to(index, &mut bodies);
+        if self.lends
+            && let Some(lent) = chain.lend(&mut bodies)
+        {
+            hung.lend(leg, &lent);
+        }
         let kept = chain.group(&mut bodies, leg.base_body.is_some());
         let count = leg.joints.len();
         let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
@@ -162,6 +170,8 @@ struct Hung<'a> {
     inertias: Vec<Vec<Option<Inertia<'a>>>>,
     /// And the wrenches that carried legs put on them.
     wrenches: Vec<Vec<[Vector3<'a>; 2]>>,
+    /// What the platform has of the ends of legs.
+    on_platform: Inertia<'a>,
 }
 
 impl<'a> Hung<'a> {
@@ -171,6 +181,7 @@ impl<'a> Hung<'a> {
         Self {
             inertias: counts().map(|count| vec![None; count]).collect(),
             wrenches: counts().map(|count| vec![still; count]).collect(),
+            on_platform: Inertia::zero(arena),
         }
     }
 
@@ -181,6 +192,17 @@ impl<'a> Hung<'a> {
                 *body = with(other, body);
             }
         }
+    }
+
+    /// Counts a mass at the point where a leg ends to what it ends on.
+    fn lend(&mut self, leg: &Leg, lent: &Inertia<'a>) {
+        let onto = match leg.end_body {
+            Some(body) => {
+                self.inertias[body.leg][body.joint].get_or_insert(Inertia::zero(lent.mass.arena()))
+            }
+            None => &mut self.on_platform,
+        };
+        *onto = with(lent, onto);
     }
 
     /// Puts what a leg's first joints leave as it is, and the wrench at its base, on the body that it stands on.
@@ -216,6 +238,40 @@ impl<'a> BodyMotion<'a> {
 }
 
 impl<'a> Chain<'_, 'a> {
+    /// Takes from the last body of a leg that ends in a point the mass that leaves it no first moment towards that
+    /// point, and gives it in the frame of what the leg ends on, where it is at the same place.
+    fn lend(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
+        let Some(End::Point {
+            at,
+            along: [true, true, true],
+        }) = self.end()
+        else {
+            return None;
+        };
+        let arena = self.arena();
+        let mut last = bodies.len().checked_sub(1)?;
+        let mut point = Vector3::zero(arena);
+        while self.kind(last) == JointKind::Fixed {
+            let before = self.antecedent(last)?;
+            bodies[before] = self.moved_onto(&bodies[last], &bodies[before], last);
+            bodies[last] = Inertia::zero(arena);
+            point = self.before(last, point);
+            last = before;
+        }
+        let body = &mut bodies[last];
+        let square = point.dot(point);
+        let mass = match square.is_zero() {
+            true => body.mass,
+            false => body.first.dot(point) * (Number::ONE / square.as_number()?),
+        };
+        if mass.is_zero() {
+            return None;
+        }
+        *body = Inertia::point(-mass).moved_onto(body, point);
+        let there = Vector3::constant(arena, *at);
+        Some(Inertia::point(mass).moved_onto(&Inertia::zero(arena), there))
+    }
+
     /// Moves what each joint leaves as it is onto the body before it; what the first ones leave, in the axes of
     /// the leg's base, where that moves.
     fn group(&self, bodies: &mut [Inertia<'a>], is_carried: bool) -> Inertia<'a> {

@@ -136,26 +136,66 @@ pub(super) struct Seat {
     pub(super) axes: Orientation,
 }
 
-/// How many stations a leg has to choose axes from. Only the base, if the closure is of some components
-/// of the end's velocity or angular velocity alone: those are the base's.
+/// The stations that a leg has to choose axes from, by number. Only the base, if the closure is of some components
+/// of the end's velocity or angular velocity alone that others of the axes mix with the rest.
 #[must_use]
-pub(crate) fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
-    if !is_whole(mechanism, leg) {
-        return 1;
-    }
+pub(crate) fn station_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
-        .map_or(1, |frames| Orientation::stations(&frames).len())
+        .map(|frames| Orientation::stations(&frames))
+        .filter(|stations| keep_rows(mechanism, leg, &arena, &configuration, stations))
+        .map_or(vec![0], |stations| {
+            distinct(&stations, &arena, &configuration)
+        })
 }
 
-/// Whether a leg is closed in all three components of a velocity or in none, so that any axes will do.
-pub(super) fn is_whole(mechanism: &Mechanism, leg: usize) -> bool {
-    let rows = mechanism.closure_rows(leg);
-    [0, 1].iter().all(|&part| {
-        let count = rows.iter().filter(|&&row| row / 3 == part).count();
-        count == 0 || count == 3
+/// The numbers of those of some axes that are not others of them with names and signs of their axes exchanged,
+/// which cost the same.
+pub(super) fn distinct<'a>(
+    axes: &[Orientation],
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+) -> Vec<usize> {
+    let mut own: Vec<usize> = Vec::new();
+    for (at, one) in axes.iter().enumerate() {
+        let is_known = own.iter().any(|&other| {
+            let turn = one.relative(&axes[other], arena, configuration);
+            turn.is_some_and(|turn| turn.exchanges())
+        });
+        if !is_known {
+            own.push(at);
+        }
+    }
+    own
+}
+
+/// Whether a leg's closure is of the same components in all of some axes: it is of all three of a velocity or of
+/// none, or the axes turn about what is left out. The first axes are those of the components.
+pub(super) fn keep_rows<'a>(
+    mechanism: &Mechanism,
+    leg: usize,
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+    axes: &[Orientation],
+) -> bool {
+    let rows = match mechanism.is_parasitic() {
+        // Which of the shared ones determine the joints is chosen in the axes themselves.
+        true => mechanism.legs[leg].shared_components(),
+        false => mechanism.closure_rows(leg),
+    };
+    let parts = [0, 1].map(|part| {
+        let own = rows.iter().filter(|&&row| row / 3 == part);
+        own.map(|row| row % 3).collect::<Vec<_>>()
+    });
+    let parts = || parts.iter().filter(|part| ![0, 3].contains(&part.len()));
+    let Some(first) = axes.first().filter(|_| parts().next().is_some()) else {
+        return true;
+    };
+    axes.iter().all(|other| {
+        let turn = other.relative(first, arena, configuration);
+        turn.is_some_and(|turn| parts().all(|part| turn.keeps(part)))
     })
 }
 

@@ -7,7 +7,7 @@
 
 use super::elimination::{Inverse, Rows, inverse};
 use super::linear::{apply, product};
-use crate::cas::{Arena, Expr};
+use crate::cas::{Arena, Expr, Vector3};
 
 /// Components of a free body's velocity.
 pub(super) const SIX: usize = 6;
@@ -91,6 +91,16 @@ impl<'a> Aside<'a> {
             others.fold(six[own], |sum, (&at, row)| sum + row[column] * six[at])
         };
         self.independent.iter().enumerate().map(entry).collect()
+    }
+
+    /// The columns of D: velocity of the platform's origin and angular velocity per independent rate.
+    pub(super) fn partials(&self, arena: &'a Arena) -> Vec<[Vector3<'a>; 2]> {
+        let rows = self.platform_jacobian(arena);
+        let part = |column: usize, first: usize| {
+            Vector3(std::array::from_fn(|axis| rows[first + axis][column]))
+        };
+        let columns = 0..self.independent.len();
+        columns.map(|c| [part(c, 0), part(c, 3)]).collect()
     }
 
     /// D, 6 x r.

@@ -10,7 +10,7 @@ use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::joint::link_vector;
 use super::motion_input::MotionInput;
-use super::orientation::{Orientation, constant_rotation, is_whole};
+use super::orientation::{Orientation, constant_rotation, distinct, keep_rows};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
@@ -250,16 +250,18 @@ pub(super) fn seats(
     Some(all)
 }
 
-/// How many [`seats`] there are to choose from: one for legs of a platform, and for chains that are closed in some
-/// components alone, which are those of the body that they start from.
+/// The [`seats`] to choose from, by number: the first alone for legs of a platform, and for chains that are closed in
+/// some components alone that others of the axes mix with the rest.
 #[must_use]
-pub(crate) fn seat_count(mechanism: &Mechanism, leg: usize) -> usize {
-    if mechanism.skeleton().is_none() || !is_whole(mechanism, leg) {
-        return 1;
+pub(crate) fn seat_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
+    if mechanism.skeleton().is_none() {
+        return vec![0];
     }
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
-    seats(mechanism, &configuration, leg).map_or(1, |all| all.len())
+    seats(mechanism, &configuration, leg)
+        .filter(|seats| keep_rows(mechanism, leg, &arena, &configuration, seats))
+        .map_or(vec![0], |seats| distinct(&seats, &arena, &configuration))
 }
 
 impl<'a> Relative<'a> {

@@ -123,6 +123,13 @@ impl<'a> Robot<'a> {
         body: &CarriedBody<'a>,
         symbol: StandardParameter,
     ) -> Vec<Expr<'a>> {
+        if let Some(aside) = self.aside.as_ref().filter(|_| self.own_axes) {
+            let forces = body.on_partials(self.arena, symbol, &aside.partials(self.arena));
+            return match projection.on_platform {
+                true => forces,
+                false => self.combine(&projection.platform, &forces),
+            };
+        }
         let forces = body.project(&self.free, body.unit_wrench(self.arena, symbol));
         let forces = self.on_independent(forces);
         if projection.on_platform {

@@ -1,7 +1,6 @@
 //! The derivation of one robot in one graph: configuration, closures, motion, and what every
 //! function is made of.
 
-use super::bias::end_bias;
 use super::body::{leg_base, leg_bodies};
 use super::carried::{CarriedBody, Mount};
 use super::centres::centres;
@@ -48,6 +47,10 @@ pub struct Robot<'a> {
     pub legs: Vec<LegState<'a>>,
     /// Whether what acts on a chain's joints goes to the skeleton as one force at the chain's end.
     pub(super) at_end: bool,
+    /// Whether what acts on a platform that moves aside meets its independent coordinates in its own axes.
+    pub(super) own_axes: bool,
+    /// Whether legs that end in a point lend masses there to what they end on.
+    pub(super) lends: bool,
     /// Conditions for the model to have a value.
     pub guards: Vec<Guard<'a>>,
     /// The motions that were asked for, whose quantities are named when all is derived.
@@ -84,6 +87,8 @@ impl<'a> Robot<'a> {
             aside: None,
             legs: Vec::new(),
             at_end: formulation.at_end,
+            own_axes: formulation.own_axes,
+            lends: formulation.lends,
             guards: Vec::new(),
             motions: RefCell::default(),
         };
@@ -135,6 +140,17 @@ impl<'a> Robot<'a> {
         )
         .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, platform.is_some());
+        let ground = seat
+            .as_ref()
+            .filter(|_| formulation.weighted && leg.base_body.is_none());
+        let ground = ground.and_then(|seat| {
+            let gravity = Vector3::constant(arena, mechanism.gravity);
+            let level = |axes: &Orientation| {
+                let level = Orientation::default().relative(axes, arena, configuration)?;
+                Some(-(level * gravity))
+            };
+            Some([level(&seat.axes)?, level(&frames.orientation)?])
+        });
         let centres = match formulation.meeting {
             true => centres(leg, &rates),
             false => Vec::new(),
@@ -170,6 +186,7 @@ impl<'a> Robot<'a> {
             centres,
             platform,
             closure,
+            ground,
             rows,
         });
         arena.enter("");
@@ -301,14 +318,15 @@ impl<'a> Robot<'a> {
                 (Some(_), None) => state
                     .platform
                     .as_ref()
-                    .map(|p| p.motion(&motion.u.concat(), &motion.u_dot.concat())),
+                    .map(|p| p.motion(&motion.u.concat(), &motion.u_dot.concat()))
+                    .map(|end| state.less_gravity(end)),
                 _ => None,
             };
             let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {
                 (Some(closure), Some(platform)) => {
                     let u = closure.velocities(platform);
                     name_rates(leg, &u, "rate");
-                    let bias = end_bias(self.arena, leg, &state.frames, &state.rates, &u);
+                    let bias = state.bias(self.arena, leg, &u);
                     let labels = accelerations.labels(leg, "a_on_f");
                     let u_dot = closure.accelerations(self.arena, platform, &bias, &labels);
                     name_rates(leg, &u_dot, &accelerations.name("rate_dot"));

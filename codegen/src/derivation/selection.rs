@@ -45,6 +45,14 @@ pub struct Formulation {
     /// Whether what acts on the joints of a chain goes to the skeleton as one force at the chain's end, rather than
     /// joint by joint. Legs of a platform always have it so.
     pub at_end: bool,
+    /// Whether what acts on a platform that moves aside, whose independent coordinates turn it about fewer than three axes,
+    /// meets these in the platform's own axes.
+    pub own_axes: bool,
+    /// Whether accelerations of what chains on the ground end on are taken less gravity, as those of bodies are.
+    pub weighted: bool,
+    /// Whether legs that end in a point lend masses there to what they end on, which leaves their last bodies fewer
+    /// forces.
+    pub lends: bool,
 }
 
 /// A column as a linear combination of other columns.

@@ -110,6 +110,21 @@ impl SearchLimits {
         }
     }
 
+    /// The limits of a second search of such a function, which goes another way: pairs several times, in small
+    /// functions among the nodes of all headings. `None` where one is enough.
+    #[must_use]
+    pub(crate) const fn of_control_again(self) -> Option<Self> {
+        if !self.is_thorough() {
+            return None;
+        }
+        Some(Self {
+            pair_rounds: 3,
+            whole_nodes: Self::THOROUGH.whole_nodes,
+            walk_patience: 2,
+            ..Self::QUICK
+        })
+    }
+
     /// Whether they are beyond those of a quick search.
     #[must_use]
     pub(crate) const fn is_thorough(&self) -> bool {

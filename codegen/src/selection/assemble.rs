@@ -1,7 +1,7 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
 use super::formulation;
-use super::search::Search;
+use super::search::{Search, is_cheaper};
 use crate::cas::Arena;
 use crate::derivation::{DynamicsBy, JointsBy, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
@@ -25,8 +25,11 @@ struct Form {
     selection: Selection,
     /// Before a search.
     operations: usize,
-    /// Whether it is the cheapest one in the formulation that was chosen for the robot.
-    is_robots_best: bool,
+    /// Whether it is searched however many operations it has: the cheapest one in the formulation that was chosen
+    /// for the robot, and one that a short search makes the cheapest.
+    is_worth: bool,
+    /// Whether the axes of all legs are the first ones in it, which a short search always looks at.
+    is_plain: bool,
 }
 
 impl Assembler<'_> {
@@ -53,7 +56,7 @@ impl Assembler<'_> {
         let forms = self.forms(function, from)?;
         let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(function) / 100;
-        let worth = |form: &&Form| form.is_robots_best || form.operations <= most;
+        let worth = |form: &&Form| form.is_worth || form.operations <= most;
         let mut best: Option<Program> = None;
         for Form { selection, .. } in forms.iter().filter(worth) {
             let form = Assembler { selection, ..*self }.program(function, from)?;
@@ -71,7 +74,8 @@ impl Assembler<'_> {
             Ok(Form {
                 operations: self.operations(&selection, function, from)?,
                 selection,
-                is_robots_best: false,
+                is_worth: false,
+                is_plain: false,
             })
         };
         let mut forms = vec![count(self.selection.clone())?];
@@ -81,12 +85,13 @@ impl Assembler<'_> {
         let Some(start) = forms.iter_mut().min_by_key(|form| form.operations) else {
             return Ok(forms);
         };
-        start.is_robots_best = true;
+        start.is_worth = true;
         if !self.search.is_thorough() {
             return Ok(forms);
         }
         let (least, mut best) = (start.operations, start.clone());
-        for change in &formulation::choices_of_function(self.mechanism) {
+        let mut trials = vec![best.clone()];
+        for change in &formulation::choices_of_function(self.mechanism, function) {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
             };
@@ -95,16 +100,69 @@ impl Assembler<'_> {
                 ..best.selection.clone()
             });
             // A form in which a leg cannot be written is none to choose.
-            if let Ok(trial) = trial
-                && trial.operations < best.operations
-            {
-                best = trial;
+            let Ok(mut trial) = trial else { continue };
+            trial.is_plain = change.is_plain();
+            if trial.operations < best.operations {
+                best = trial.clone();
             }
+            trials.push(trial);
         }
         if best.operations < least {
-            forms.push(best);
+            forms.push(best.clone());
         }
+        forms.extend(self.promising(function, from, trials, &best)?);
         Ok(forms)
+    }
+
+    /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
+    /// short search makes the cheapest, and the plain one if it comes near.
+    fn promising(
+        &self,
+        function: Function,
+        from: MotionInput,
+        trials: Vec<Form>,
+        best: &Form,
+    ) -> Result<Vec<Form>, Underivable> {
+        let (mut plain, others): (Vec<Form>, Vec<Form>) =
+            trials.into_iter().partition(|form| form.is_plain);
+        plain.truncate(1);
+        let mut found = formulation::promising(others, best.operations, |form| form.operations);
+        found.extend(plain);
+        found.retain(|form| form.selection.formulation != best.selection.formulation);
+        let search = Search::short();
+        let after = |form: &Form| -> Result<usize, Underivable> {
+            let selection = &form.selection;
+            let short = Assembler {
+                selection,
+                search: &search,
+                ..*self
+            };
+            Ok(short.program(function, from)?.cost().operations())
+        };
+        if found.is_empty() {
+            return Ok(Vec::new());
+        }
+        let of_best = after(best)?;
+        let found = found.into_iter().map(|form| Ok((after(&form)?, form)));
+        let found: Vec<(usize, Form)> = found.collect::<Result<_, Underivable>>()?;
+        let least = found.iter().map(|(operations, _)| *operations).min();
+        let least = least.unwrap_or(of_best).min(of_best);
+        let first = found
+            .iter()
+            .position(|(operations, _)| *operations == least);
+        let first = first.filter(|_| least < of_best);
+        let near = least * NEAR / 100;
+        let worth = found
+            .into_iter()
+            .enumerate()
+            .filter(|(at, (operations, form))| {
+                Some(*at) == first || (form.is_plain && *operations <= near)
+            });
+        let worth = worth.map(|(_, (_, form))| Form {
+            is_worth: true,
+            ..form
+        });
+        Ok(worth.collect())
     }
 
     /// The operations of a function as it is derived.
@@ -128,19 +186,15 @@ impl Assembler<'_> {
                 ..self.selection.clone()
             });
         }
-        let has_forces = matches!(
-            function,
-            Function::Bias(_)
-                | Function::ForwardDynamics(_)
-                | Function::InverseDynamics(_)
-                | Function::InverseDynamicsPreloaded
-        );
-        has_forces.then(|| Selection {
+        formulation::has_forces(function).then(|| Selection {
             dynamics: DynamicsBy::Bodies,
             ..self.selection.clone()
         })
     }
 }
+
+/// Operations after a short search of a plain form that is worth a longer one, in hundredths of the fewest.
+const NEAR: usize = 106;
 
 /// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
 /// replacements take about as much from each form of the dynamics; with and without combined columns they,
@@ -150,14 +204,6 @@ const fn worth_a_search(function: Function) -> usize {
         Some(Columns::Standard) => 120,
         _ => 102,
     }
-}
-
-/// Whether a program takes fewer operations than another one and no more sines and roots.
-fn is_cheaper(program: &Program, other: &Program) -> bool {
-    let (of_program, of_other) = (program.cost(), other.cost());
-    of_program.operations() < of_other.operations()
-        && of_program.trigonometric_pairs <= of_other.trigonometric_pairs
-        && of_program.square_roots <= of_other.square_roots
 }
 
 /// How the joints follow from the pose: by rule, if one fits every leg.

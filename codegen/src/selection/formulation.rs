@@ -2,10 +2,17 @@
 //! a search, and counted.
 
 use super::regressor::Regressor;
-use crate::derivation::{Formulation, Selection, Underivable, seat_count, station_count};
-use crate::mechanism::Mechanism;
+use crate::derivation::{Formulation, Selection, Underivable, seat_choices, station_choices};
+use crate::mechanism::{End, Leg, Mechanism};
 use crate::parallel;
+use overact_core::Function;
 use std::collections::BTreeSet;
+
+/// Operations of a form that a search could make the cheapest one, in hundredths of those of the cheapest before it.
+const PROMISING: usize = 106;
+
+/// Of so many such forms a short search tells which is the cheapest.
+const TRIED: usize = 6;
 
 /// The cheapest formulation of the standard regressor from joint angles, with the regressor: for each shape
 /// of legs the axes of its closure, then whether axes that meet share a moment; the plain form where nothing
@@ -22,6 +29,9 @@ pub(super) fn cheapest_formulation(
         seats: vec![0; mechanism.legs.len()],
         meeting: false,
         at_end: false,
+        own_axes: false,
+        weighted: false,
+        lends: false,
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -38,6 +48,19 @@ pub(super) fn cheapest_formulation(
         best.choose(&choice);
     }
     Ok((best.formulation, best.regressor))
+}
+
+/// Those of some trials that a search could make the cheapest, the cheapest first: of each number of operations one.
+pub(super) fn promising<T>(
+    mut trials: Vec<T>,
+    least: usize,
+    operations: impl Fn(&T) -> usize,
+) -> Vec<T> {
+    trials.retain(|trial| operations(trial) <= least * PROMISING / 100);
+    trials.sort_by_key(&operations);
+    trials.dedup_by_key(|trial| operations(trial));
+    trials.truncate(TRIED);
+    trials
 }
 
 /// The best formulation so far.
@@ -70,31 +93,53 @@ impl Best<'_> {
 /// What of a formulation may be written otherwise.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
+    /// The first axes for all legs.
+    Plain,
     /// The axes of the closure of legs of one shape.
     Station(Vec<usize>, usize),
     /// The axes in which their closures see what they end on.
-    Seat(Vec<usize>, usize),
+    Seat(Vec<usize>, usize, usize),
     /// Whether axes that meet share a moment.
     Meeting(bool),
     /// Whether forces of chains go to the skeleton at their ends.
     AtEnd(bool),
+    /// Whether forces on a platform that moves aside meet its coordinates in its own axes.
+    OwnAxes(bool),
+    /// Whether accelerations of the ends of chains are taken less gravity.
+    Weighted(bool),
+    /// Whether legs lend masses at their ends to what they end on.
+    Lends(bool),
 }
 
 impl Change {
+    /// Whether it takes the first axes for all legs.
+    pub(super) const fn is_plain(&self) -> bool {
+        matches!(self, Self::Plain)
+    }
+
     /// The formulation with the change; `None` where it is written so already.
     pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
         let mut changed = formulation.clone();
         match self {
-            Self::Station(legs, station) => {
-                legs.iter().for_each(|&l| changed.stations[l] = *station);
+            Self::Plain => {
+                changed.stations.fill(0);
+                changed.seats.fill(0);
             }
-            Self::Seat(legs, seat) => {
+            Self::Station(legs, station) => {
                 for &leg in legs {
-                    (changed.seats[leg], changed.stations[leg]) = (*seat, 0);
+                    (changed.seats[leg], changed.stations[leg]) = (0, *station);
+                }
+            }
+            Self::Seat(legs, seat, station) => {
+                for &leg in legs {
+                    (changed.seats[leg], changed.stations[leg]) = (*seat, *station);
                 }
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
             Self::AtEnd(at_end) => changed.at_end = *at_end,
+            Self::OwnAxes(own_axes) => changed.own_axes = *own_axes,
+            Self::Weighted(weighted) => changed.weighted = *weighted,
+            Self::Lends(lends) => changed.lends = *lends,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -111,30 +156,79 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        let least = |count: fn(&Mechanism, usize) -> usize| {
-            0..legs.iter().map(|&l| count(mechanism, l)).min().unwrap_or(0)
+        // A number counts if it stands for axes of its own in one of the legs.
+        let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
+            let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
+            all.collect::<BTreeSet<usize>>()
         };
-        let station = |station| Change::Station(legs.clone(), station);
-        let seat = |seat| Change::Seat(legs.clone(), seat);
-        let stations: Vec<Change> = least(station_count).map(station).collect();
-        let seats: Vec<Change> = least(seat_count).map(seat).collect();
-        match seats.len() > 1 {
-            true => vec![stations.clone(), seats, stations],
-            false => vec![stations],
-        }
+        let stations = of_all(station_choices);
+        let own = stations
+            .iter()
+            .map(|&station| Change::Station(legs.clone(), station));
+        let seated = of_all(seat_choices).into_iter().skip(1).flat_map(|seat| {
+            let legs = &legs;
+            let stations = stations.iter();
+            stations.map(move |&station| Change::Seat(legs.clone(), seat, station))
+        });
+        own.chain(seated).collect()
     };
-    let mut choices: Vec<Vec<Change>> = shapes.into_iter().flat_map(of_shape).collect();
+    let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
+    if mechanism.is_parasitic() {
+        choices.insert(0, vec![Change::OwnAxes(true)]);
+    }
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
+    if mechanism.skeleton().is_some() {
+        choices.push(vec![Change::Weighted(false), Change::Weighted(true)]);
+    }
     choices
 }
 
 /// The changes among which one is chosen after the other for a function on its own.
-pub(super) fn choices_of_function(mechanism: &Mechanism) -> Vec<Change> {
-    let mut all: Vec<Change> = choices(mechanism).into_iter().flatten().collect();
-    if mechanism.skeleton().is_some() {
+pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
+    let has_forces = has_forces(function);
+    let has_motion = has_forces || function.columns().is_some();
+    let mut all = vec![Change::Plain];
+    all.extend(choices(mechanism).into_iter().flatten());
+    all.retain(|change| has_motion || !matches!(change, Change::Weighted(_) | Change::OwnAxes(_)));
+    if has_forces && mechanism.skeleton().is_some() {
         all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
     }
+    let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
+    if has_forces && mechanism.legs.iter().any(ends_in_point) {
+        all.push(Change::Lends(true));
+    }
     all
+}
+
+/// The formulations of a function that one change makes of that of a robot, and those that all changes so far make
+/// together.
+#[must_use]
+pub fn formulations(
+    mechanism: &Mechanism,
+    function: Function,
+    of: &Formulation,
+) -> Vec<Formulation> {
+    let mut together = of.clone();
+    let mut all = Vec::new();
+    for change in choices_of_function(mechanism, function) {
+        all.extend(change.of(of));
+        together = change.of(&together).unwrap_or(together);
+        if !all.contains(&together) {
+            all.push(together.clone());
+        }
+    }
+    all
+}
+
+/// Whether a function adds up forces of given parameters.
+pub(super) const fn has_forces(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Bias(_)
+            | Function::ForwardDynamics(_)
+            | Function::InverseDynamics(_)
+            | Function::InverseDynamicsPreloaded
+    )
 }
 
 /// The regressor in a formulation.

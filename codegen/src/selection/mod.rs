@@ -22,6 +22,7 @@ mod values;
 pub use assemble::Assembler;
 pub use base::BaseParameter;
 pub use columns::sample;
+pub use formulation::formulations;
 pub(crate) use lanes::beside;
 pub use search::Search;
 pub(crate) use values::regrouped;

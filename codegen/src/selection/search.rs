@@ -84,6 +84,8 @@ impl Search {
         standing: &dyn Fn(InputElement) -> Option<f64>,
     ) -> Result<Program, InternalError> {
         let limits = self.limits_of(function);
+        let again = is_of_control(function).then(|| self.limits.of_control_again());
+        let again = again.flatten();
         let compared = if limits.compares_regular_states {
             &self.states[..]
         } else {
@@ -104,7 +106,15 @@ impl Search {
                 at_state(mechanism, state, element).or_else(|| standing(element))
             },
         };
-        lower(arena, &function, &limits, &states)
+        let program = lower(arena, &function, &limits, &states)?;
+        let Some(again) = again else {
+            return Ok(program);
+        };
+        let other = lower(arena, &function, &again, &states)?;
+        Ok(match is_cheaper(&other, &program) {
+            true => other,
+            false => program,
+        })
     }
 
     /// How far the search of a function goes: the identification models, which run at every sample of
@@ -113,13 +123,29 @@ impl Search {
     const fn limits_of(&self, function: Function) -> SearchLimits {
         match function {
             Function::IdmRedPlatform(_) => self.limits,
-            Function::InverseDynamics(_)
-            | Function::MassMatrix(_)
-            | Function::Bias(_)
-            | Function::ForwardDynamics(_) => self.limits.of_control(),
+            _ if is_of_control(function) => self.limits.of_control(),
             _ => self.limits.of_lesser_functions(),
         }
     }
+}
+
+/// Whether a controller evaluates a function.
+const fn is_of_control(function: Function) -> bool {
+    matches!(
+        function,
+        Function::InverseDynamics(_)
+            | Function::MassMatrix(_)
+            | Function::Bias(_)
+            | Function::ForwardDynamics(_)
+    )
+}
+
+/// Whether a program takes fewer operations than another one and no more sines and roots.
+pub(super) fn is_cheaper(program: &Program, other: &Program) -> bool {
+    let (of_program, of_other) = (program.cost(), other.cost());
+    of_program.operations() < of_other.operations()
+        && of_program.trigonometric_pairs <= of_other.trigonometric_pairs
+        && of_program.square_roots <= of_other.square_roots
 }
 
 fn inputs(derived: &Derived<'_>) -> Vec<Array> {

@@ -1,16 +1,21 @@
-//! The two forms of the forces of given parameters give the same numbers: that which a robot's functions are
-//! not written in, because the other needs fewer operations, is seen nowhere else.
+//! All forms of a function give the same numbers: those which a robot's functions are not written in, because
+//! another needs fewer operations, are seen nowhere else. They are the two forms of the forces of given parameters,
+//! and the formulations among which the generator chooses.
 
 use overact::{Columns, Function, Model};
-use overact_codegen::derivation::{DynamicsBy, Selection};
-use overact_codegen::internals::{Assembler, Search};
+use overact_codegen::RobotModel;
+use overact_codegen::derivation::{DynamicsBy, Formulation, Selection};
+use overact_codegen::internals::{Assembler, Search, formulations};
 use overact_tests::support::backend::{evaluate, matrix};
 use overact_tests::support::library::described;
-use overact_tests::support::sample::samples;
+use overact_tests::support::sample::{Sample, samples};
 use overact_tests::support::{Agreement, Failure};
 
 const TOLERANCE: f64 = 1e-10;
 const STATES: usize = 10;
+
+/// Of so many formulations of a robot one is tried; all of robots with few.
+const PART: usize = 12;
 
 overact_tests::library!(check);
 
@@ -55,6 +60,56 @@ fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
         }
         println!("{function:?}: {agreement}");
         assert!(agreement.within(TOLERANCE), "{function:?}: {agreement}");
+    }
+    for function in [
+        Function::InverseDynamics(Columns::Standard),
+        Function::IdmRedPlatform(Columns::Standard),
+    ] {
+        formulated(stem, model, function, &all)?;
+    }
+    Ok(())
+}
+
+/// A function in other formulations than the robot's.
+fn formulated(
+    stem: &str,
+    model: &RobotModel,
+    function: Function,
+    all: &[Sample],
+) -> Result<(), Failure> {
+    let from = model.plain(function).ok_or("no such function")?.from;
+    let program = |formulation: &Formulation| {
+        let selection = Selection {
+            formulation: formulation.clone(),
+            dynamics: DynamicsBy::Bodies,
+            ..model.selection.clone()
+        };
+        let assembler = Assembler {
+            mechanism: &model.mechanism,
+            selection: &selection,
+            search: &Search::none(),
+        };
+        assembler.program(function, from)
+    };
+    let own = &model.selection.formulation;
+    let wanted = program(own).map_err(|error| format!("{stem}: {error:?}"))?;
+    let others = formulations(&model.mechanism, function, own);
+    let step = others.len().div_ceil(PART).max(1);
+    // The last ones have the most changes, and are all tried.
+    for formulation in others.iter().rev().step_by(step) {
+        // A form in which a leg cannot be written is none to choose.
+        let Ok(found) = program(formulation) else {
+            continue;
+        };
+        let mut agreement = Agreement::new();
+        for sample in all {
+            let input = |name: &str| sample.input(name).ok();
+            let numbers = evaluate(&wanted, &input)?;
+            let same = evaluate(&found, &input)?;
+            agreement.compare(&matrix(&found, &same), &matrix(&wanted, &numbers));
+        }
+        let told = format!("{stem}, {function:?}, {formulation:?}: {agreement}");
+        assert!(agreement.within(TOLERANCE), "{told}");
     }
     Ok(())
 }
