@@ -150,7 +150,7 @@ fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
 
 /// The scalar product.
 #[inline(always)]
-pub(super) fn product(a: &[Lanes], b: &[Lanes]) -> Lanes {
+fn product(a: &[Lanes], b: &[Lanes]) -> Lanes {
     let mut sum = [0.0; LANES];
     for (a, b) in a.iter().zip(b) {
         for lane in 0..LANES {
