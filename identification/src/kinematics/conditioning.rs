@@ -8,12 +8,8 @@
 use overact::{Function, Model};
 use pulp::NullaryFnOnce;
 
-use super::dense::{LANES, Lanes, eliminated, invert, lanes, orthogonalised, product};
+use super::dense::{LANES, Lanes, eliminated, invert, lanes, orthogonalised};
 use crate::widest::widest;
-
-/// Fourth powers of conditions below which inverses have most of their digits, and room for the others.
-const LARGEST_TOLD: f64 = 1e18;
-const ROOM: f64 = 1.001;
 
 /// Inverse norms of the columns of J_p^inv at home, which make metres and radians comparable; ones
 /// where the model has no value at home.
@@ -83,22 +79,12 @@ impl KeptActuators {
 
     /// Conditions and determinants of the kept rows of J_p^inv, of `size` numbers each, n x r and row-major.
     pub(crate) fn conditions(&self, jacobians: &[f64], size: usize) -> Vec<Condition> {
-        self.told(jacobians, size, false)
-    }
-
-    /// The same where the largest condition number is wanted only: others that are smaller may be told as 1.
-    pub(crate) fn worst_conditions(&self, jacobians: &[f64], size: usize) -> Vec<Condition> {
-        self.told(jacobians, size, true)
-    }
-
-    fn told(&self, jacobians: &[f64], size: usize, worst: bool) -> Vec<Condition> {
         let samples = jacobians.len() / size;
         let mut found = vec![Condition::PERFECT; samples];
         widest(Conditions {
             choice: self,
             jacobians,
             size,
-            worst,
             found: &mut found,
         });
         found
@@ -123,8 +109,6 @@ struct Conditions<'a> {
     choice: &'a KeptActuators,
     jacobians: &'a [f64],
     size: usize,
-    /// Whether the worst one is wanted only.
-    worst: bool,
     found: &'a mut [Condition],
 }
 
@@ -135,15 +119,10 @@ impl NullaryFnOnce for Conditions<'_> {
     fn call(self) {
         let KeptActuators { kept, scales } = self.choice;
         let (n, r) = (kept.len(), scales.len());
-        let groups = self.jacobians.len().div_ceil(LANES * self.size);
-        let mut columns = vec![[0.0; LANES]; groups * n * r];
-        let mut matrix = vec![[0.0; LANES]; r * r];
-        let mut inverse = matrix.clone();
-        // For each group of samples, what the conditions to the fourth power do not exceed.
-        let mut bounds = vec![f64::INFINITY; groups];
-        let rows = self.jacobians.chunks(LANES * self.size);
-        for (group, rows) in rows.enumerate() {
-            let columns = &mut columns[group * n * r..(group + 1) * n * r];
+        let mut columns = vec![[0.0; LANES]; n * r];
+        let mut matrix = vec![[0.0; LANES]; if n == r { r * r } else { 0 }];
+        let groups = self.jacobians.chunks(LANES * self.size);
+        for (rows, found) in groups.zip(self.found.chunks_mut(LANES)) {
             for (j, scale) in scales.iter().enumerate() {
                 for (i, actuator) in kept.iter().enumerate() {
                     let entry = |jacobian: &[f64]| jacobian[actuator * r + j] * scale;
@@ -152,62 +131,21 @@ impl NullaryFnOnce for Conditions<'_> {
             }
             let mut determinants = [0.0; LANES];
             if n == r {
-                matrix.copy_from_slice(columns);
+                matrix.copy_from_slice(&columns);
                 determinants = scaled_determinants(&mut matrix, r);
             }
-            let found = self.found[group * LANES..].iter_mut();
-            for (found, own) in found.zip(determinants).take(rows.len() / self.size) {
-                found.determinant = own;
-            }
-            if self.worst {
-                bounds[group] = bound(columns, n, (&mut matrix, &mut inverse));
-            }
-        }
-        let mut order: Vec<usize> = (0..groups).collect();
-        order.sort_by(|a, b| bounds[*b].total_cmp(&bounds[*a]));
-        let mut largest = 0.0_f64;
-        for group in order {
-            if bounds[group] < largest.powi(4) {
-                break;
-            }
-            let columns = &mut columns[group * n * r..(group + 1) * n * r];
-            let numbers = orthogonalised(columns, n);
-            let found = self.found[group * LANES..].iter_mut().zip(numbers);
-            let jacobians = self.jacobians[group * LANES * self.size..].chunks_exact(self.size);
-            for ((found, number), jacobian) in found.zip(jacobians) {
-                if self.choice.is_identity(jacobian) {
-                    *found = Condition::PERFECT;
-                } else {
-                    found.number = number;
+            let numbers = orthogonalised(&mut columns, n);
+            let jacobians = rows.chunks_exact(self.size);
+            for ((lane, found), jacobian) in found.iter_mut().enumerate().zip(jacobians) {
+                if !self.choice.is_identity(jacobian) {
+                    *found = Condition {
+                        number: numbers[lane],
+                        determinant: determinants[lane],
+                    };
                 }
-                largest = largest.max(found.number);
             }
         }
     }
-}
-
-/// The fourth power of what the conditions of matrices of columns of `n` values do not exceed, in memory for two
-/// matrices: with the norms of G = JᵀJ and its inverse by Frobenius, κ⁴ <= |G|² |G^-1|².
-#[inline(always)]
-fn bound(columns: &[Lanes], n: usize, (gram, inverse): (&mut [Lanes], &mut [Lanes])) -> f64 {
-    let r = columns.len() / n;
-    for i in 0..r {
-        for j in 0..r {
-            let (own, other) = (&columns[i * n..], &columns[j * n..(j + 1) * n]);
-            gram[i * r + j] = product(&own[..n], other);
-            inverse[i * r + j] = [f64::from(u8::from(i == j)); LANES];
-        }
-    }
-    let square = product(gram, gram);
-    let is_regular = invert(gram, inverse, r);
-    let other = product(inverse, inverse);
-    let mut bound = 0.0_f64;
-    for lane in 0..LANES {
-        let own = square[lane] * other[lane];
-        let is_told = is_regular[lane] && own < LARGEST_TOLD;
-        bound = bound.max(if is_told { ROOM * own } else { f64::INFINITY });
-    }
-    bound
 }
 
 /// Determinants of matrices of `r` columns, divided by the products of their rows' norms.
@@ -343,26 +281,6 @@ mod tests {
         let together = choice.conditions(&jacobians, 12);
         for (jacobian, found) in jacobians.chunks_exact(12).zip(&together) {
             assert_eq!(choice.conditions(jacobian, 12)[0], *found);
-        }
-    }
-
-    #[test]
-    fn the_worst_condition_is_found_without_most_of_the_others() {
-        let jacobian = |k: usize| (0..12).map(move |i| (0.02 * k as f64 + (i * i) as f64).sin());
-        let jacobians: Vec<f64> = (0..300).flat_map(jacobian).collect();
-        for kept in [vec![0, 1, 2, 3], vec![3, 0, 2]] {
-            let choice = KeptActuators::new(kept, &[1.0, 0.7, 2.0]);
-            let (all, some) = (
-                choice.conditions(&jacobians, 12),
-                choice.worst_conditions(&jacobians, 12),
-            );
-            let largest = all.iter().map(|own| own.number).fold(0.0, f64::max);
-            for (own, found) in all.iter().zip(&some) {
-                assert_eq!(own.determinant, found.determinant);
-                assert!(found.number == own.number || own.number < largest);
-            }
-            let left = some.iter().filter(|own| own.number == 1.0).count();
-            assert!((150..300).contains(&left), "{left}");
         }
     }
 }

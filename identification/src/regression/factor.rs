@@ -6,14 +6,19 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{elimination::residual, turned::turned, update::update};
+use super::{
+    elimination::residual,
+    turned::turned,
+    update::{update, update_by_triangle},
+};
 
 /// Columns whose part outside the others is below this part of their norm are dependent on the
 /// data.
 pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
 
-/// Rows are taken in blocks of this many times the number of columns.
-const BLOCK_RATIO: usize = 4;
+/// Numbers that are taken together, at most, unless rows are as many as columns: all reflections go through them, so
+/// they have to stay in the nearest cache.
+const TOGETHER: usize = 6144;
 
 /// R factor of [W Y], with the sums of all columns for the mean of the residual.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +58,7 @@ impl Factor {
         }
         self.equations += rows.nrows();
         self.sums += rows.row_sum().transpose();
-        let step = BLOCK_RATIO * size;
+        let step = self.worthwhile();
         for first in (0..rows.nrows()).step_by(step) {
             let count = step.min(rows.nrows() - first);
             self.absorb(rows.rows(first, count).clone_owned());
@@ -73,14 +78,15 @@ impl Factor {
 
     /// Rows that are worth a factorisation.
     pub(crate) fn worthwhile(&self) -> usize {
-        BLOCK_RATIO * self.r.ncols()
+        let size = self.r.ncols();
+        (TOGETHER / size).max(size)
     }
 
     /// Adds the equations of another factor.
     pub(crate) fn add(&mut self, other: &Self) {
         self.equations += other.equations;
         self.sums += &other.sums;
-        self.absorb(other.r.clone());
+        update_by_triangle(&mut self.r, &mut other.r.clone());
     }
 
     /// Adds the equations of other factors, each scaled by a weight.
@@ -91,7 +97,7 @@ impl Factor {
         for (factor, weight) in factors.iter().zip(weights) {
             merged.equations += factor.equations;
             merged.sums += &factor.sums * *weight;
-            merged.absorb(&factor.r * *weight);
+            update_by_triangle(&mut merged.r, &mut (&factor.r * *weight));
         }
         merged
     }

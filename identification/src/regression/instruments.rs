@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use overact::{Code, Model};
 
-use super::{chunk::Chunk, observation::Observer, points::Told};
+use super::{chunk::Chunk, observation::Observer};
 use crate::{
     data::Log,
     error::{Error, Problem},
@@ -73,7 +73,7 @@ impl<'a> Companion<'a> {
             return Vec::new();
         };
         let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
-        let chunks = observer.chunks_with(motion, blocks, &mut failed, (scales, Told::Nothing));
+        let chunks = observer.chunks_with(motion, blocks, &mut failed, (scales, false));
         let error = failed.into_iter().flatten().next();
         match (chunks, error) {
             (Ok(chunks), None) => chunks,

@@ -14,7 +14,7 @@ use super::{
     columns::ColumnSet,
     fold::Phases,
     instruments::Companion,
-    points::{Points, Told},
+    points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
     system::{Observed, singular},
@@ -115,7 +115,7 @@ impl Observer<'_> {
             let together = rayon::current_num_threads().max(1);
             for first in (0..blocks).step_by(together) {
                 let range = first..(first + together).min(blocks);
-                let told = (&scales[..], Told::Worst(&points));
+                let told = (&scales[..], true);
                 let chunks = self.chunks_with(&motion, range.clone(), &mut failed, told)?;
                 let own = companion.as_mut();
                 let own = own.map(|own| own.chunks(self, range, &scales));
@@ -197,10 +197,10 @@ impl Observer<'_> {
         failed: &mut [Option<Error>],
     ) -> Result<Vec<Chunk>, Error> {
         let scales = home_scales(self.model);
-        self.chunks_with(motion, blocks, failed, (&scales, Told::Each))
+        self.chunks_with(motion, blocks, failed, (&scales, true))
     }
 
-    /// The same with the conditions that are to be told, and the scales of the platform's coordinates.
+    /// The same with the scales of the platform's coordinates; with conditions or without.
     ///
     /// # Errors
     /// A sample at which the model has no value.
@@ -209,7 +209,7 @@ impl Observer<'_> {
         motion: &Motion,
         blocks: Range<usize>,
         failed: &mut [Option<Error>],
-        told: (&[f64], Told<'_>),
+        told: (&[f64], bool),
     ) -> Result<Vec<Chunk>, Error> {
         let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
         let chunks: Vec<(Chunk, Vec<Option<usize>>)> = blocks
@@ -231,7 +231,7 @@ impl Observer<'_> {
         &self,
         motion: &Motion,
         first: usize,
-        (scales, told): (&[f64], Told<'_>),
+        (scales, conditions): (&[f64], bool),
         wanted: &[bool],
     ) -> Result<(Chunk, Vec<Option<usize>>), Error> {
         let info = self.model.info();
@@ -255,13 +255,9 @@ impl Observer<'_> {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
             let choice = KeptActuators::new(kept, scales);
-            chunk.conditions.extend(match told {
-                Told::Nothing => None,
-                Told::Worst(points) if points.is_one(motion, first..first + count) => {
-                    Some(choice.worst_conditions(&jacobians, n * r))
-                }
-                Told::Worst(_) | Told::Each => Some(choice.conditions(&jacobians, n * r)),
-            });
+            if conditions {
+                chunk.conditions.push(choice.conditions(&jacobians, n * r));
+            }
             if *projection == Projection::Platform || !*wanted {
                 chunk.lines.push(Vec::new());
                 singular.push(None);

@@ -1,7 +1,5 @@
 //! What is plotted of a run's motion, and how badly the kept actuators determine the platform along it.
 
-use std::ops::Range;
-
 use overact::Model;
 
 use super::{projection::Projection, sink::Plan, system::PartitionCondition};
@@ -16,15 +14,6 @@ use crate::{
 
 /// Relative difference of conditions that are one but for rounding.
 const SAME: f64 = 1e-9;
-
-/// Which conditions of the kept actuators are told.
-#[derive(Clone, Copy)]
-pub(crate) enum Told<'a> {
-    Nothing,
-    Each,
-    /// The largest at each point of the plots; others that are smaller may be told as 1.
-    Worst(&'a Points<'a>),
-}
 
 /// Collects what is plotted of a run's motion, and the worst conditions.
 pub(crate) struct Points<'a> {
@@ -90,18 +79,6 @@ impl<'a> Points<'a> {
             settings,
             frequency: log.sampling_frequency(),
         }
-    }
-
-    /// Whether successive samples belong to one point.
-    pub(super) fn is_one(&self, motion: &Motion, samples: Range<usize>) -> bool {
-        let start = motion.first_sample - self.settings.skip_start;
-        let point = |sample: usize| self.point(start + sample);
-        point(samples.start) == point(samples.end.saturating_sub(1))
-    }
-
-    /// The point that a sample belongs to.
-    fn point(&self, sample: usize) -> usize {
-        (sample.saturating_sub(self.first) / self.stride).min(self.last)
     }
 
     /// Takes the next samples, with the conditions of each projection block by block.

@@ -13,7 +13,19 @@ const LANES: usize = 8;
 
 /// Makes of the upper triangular factor `r` that of [r; rows]; `rows` are used up.
 pub(super) fn update(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
-    let work = Update { r, rows };
+    let count = rows.nrows();
+    reflect(r, rows, &|_| count);
+}
+
+/// The same where the rows are upper triangular, too: below its diagonal a column stays zero.
+pub(super) fn update_by_triangle(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
+    let count = rows.nrows();
+    reflect(r, rows, &|column| count.min(column + 1));
+}
+
+/// Reflects rows of which a column has so many entries that are not zero, from the first one on.
+fn reflect(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>, height: &dyn Fn(usize) -> usize) {
+    let work = Update { r, rows, height };
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
         simd.vectorize(work);
@@ -26,6 +38,8 @@ pub(super) fn update(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
 struct Update<'a> {
     r: &'a mut DMatrix<f64>,
     rows: &'a mut DMatrix<f64>,
+    /// Entries of a column that are not zero.
+    height: &'a dyn Fn(usize) -> usize,
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -48,6 +62,8 @@ impl Update<'_> {
         for j in 0..size {
             let (_, rest) = self.rows.as_mut_slice().split_at_mut(j * count);
             let (axis, others) = rest.split_at_mut(count);
+            let height = (self.height)(j);
+            let axis = &axis[..height];
             let square = product(axis, axis);
             if square == 0.0 {
                 continue;
@@ -58,6 +74,7 @@ impl Update<'_> {
             let first = before + after;
             let scale = 2.0 / (first * first + square);
             for (place, column) in others.chunks_exact_mut(count).enumerate() {
+                let column = &mut column[..height];
                 let top = &mut self.r[(j, j + 1 + place)];
                 let part = scale * (first * *top + product(axis, column));
                 *top = part * first - *top;
@@ -87,7 +104,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::update;
+    use super::{update, update_by_triangle};
     use nalgebra::DMatrix;
 
     #[test]
@@ -103,5 +120,9 @@ mod tests {
         let below = (0..7).flat_map(|j| (j + 1..7).map(move |i| (i, j)));
         assert!(below.into_iter().all(|place| r[place] == 0.0));
         assert!(r.diagonal().iter().all(|entry| *entry >= 0.0));
+
+        let mut both = r.clone();
+        update_by_triangle(&mut both, &mut r.clone());
+        assert!((both.tr_mul(&both) - 2.0 * &wanted).amax() < 1e-12 * wanted.amax());
     }
 }
