@@ -84,3 +84,13 @@ pub enum DynamicsBy {
     /// Body by body, summed from the tips to the base.
     Bodies,
 }
+
+impl DynamicsBy {
+    /// The other form.
+    pub(crate) const fn other(self) -> Self {
+        match self {
+            Self::Parameters => Self::Bodies,
+            Self::Bodies => Self::Parameters,
+        }
+    }
+}

@@ -95,6 +95,12 @@ impl Assembler<'_> {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
             };
+            let other = change.is_plain() && formulation::has_forces(function);
+            let other = other.then(|| Selection {
+                formulation: formulation.clone(),
+                dynamics: best.selection.dynamics.other(),
+                ..best.selection.clone()
+            });
             let trial = count(Selection {
                 formulation,
                 ..best.selection.clone()
@@ -102,6 +108,10 @@ impl Assembler<'_> {
             // A form in which a leg cannot be written is none to choose.
             let Ok(mut trial) = trial else { continue };
             trial.is_plain = change.is_plain();
+            if let Some(Ok(mut other)) = other.map(count) {
+                other.is_plain = true;
+                trials.push(other);
+            }
             if trial.operations < best.operations {
                 best = trial.clone();
             }
@@ -115,7 +125,7 @@ impl Assembler<'_> {
     }
 
     /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
-    /// short search makes the cheapest, and the plain one if it comes near.
+    /// short search makes the cheapest, and the plain ones if they come near.
     fn promising(
         &self,
         function: Function,
@@ -123,12 +133,14 @@ impl Assembler<'_> {
         trials: Vec<Form>,
         best: &Form,
     ) -> Result<Vec<Form>, Underivable> {
-        let (mut plain, others): (Vec<Form>, Vec<Form>) =
+        let (plain, others): (Vec<Form>, Vec<Form>) =
             trials.into_iter().partition(|form| form.is_plain);
-        plain.truncate(1);
         let mut found = formulation::promising(others, best.operations, |form| form.operations);
         found.extend(plain);
-        found.retain(|form| form.selection.formulation != best.selection.formulation);
+        let (formulation, dynamics) = (&best.selection.formulation, best.selection.dynamics);
+        found.retain(|Form { selection, .. }| {
+            selection.formulation != *formulation || selection.dynamics != dynamics
+        });
         let search = Search::short();
         let after = |form: &Form| -> Result<usize, Underivable> {
             let selection = &form.selection;
