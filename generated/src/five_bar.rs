@@ -29,28 +29,28 @@
 /// | `idm_red_platform_from_joints` | 161, 4 sc, 4 sg, 2 gd |  |
 /// | `idm_red_platform_from_actuators` | 224, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `idm_red_actuators` | 182, 2 √, 4 sg, 7 gd |  |
-/// | `idm_red_actuators_from_joints` | 155, 4 sc, 4 sg, 3 gd |  |
+/// | `idm_red_actuators_from_joints` | 153, 4 sc, 4 sg, 3 gd |  |
 /// | `idm_red_actuators_from_actuators` | 208, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `idm_red_platform_base` | 166, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_base_from_joints` | 129, 4 sc, 4 sg, 2 gd |  |
 /// | `idm_red_platform_base_from_actuators` | 195, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 7 gd |  |
-/// | `idm_red_actuators_base_from_joints` | 137, 4 sc, 4 sg, 3 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 135, 4 sc, 4 sg, 3 gd |  |
 /// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `project_platform` | 49, 2 √, 6 gd |  |
 /// | `project_actuators` | 0 |  |
-/// | `inverse_dynamics` | 222, 2 √, 4 sg, 7 gd |  |
+/// | `inverse_dynamics` | 206, 2 √, 4 sg, 7 gd |  |
 /// | `inverse_dynamics_from_joints` | 188, 4 sc, 4 sg, 3 gd |  |
-/// | `inverse_dynamics_from_actuators` | 248, 3 √, 2 sc, 4 sg, 9 gd |  |
-/// | `inverse_dynamics_base` | 186, 2 √, 4 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_joints` | 147, 4 sc, 4 sg, 3 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 211, 3 √, 2 sc, 4 sg, 9 gd |  |
-/// | `mass_matrix` | 111, 2 √, 6 gd |  |
-/// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
-/// | `bias` | 198, 2 √, 4 sg, 6 gd |  |
-/// | `bias_base` | 160, 2 √, 4 sg, 6 gd |  |
-/// | `forward_dynamics` | 272, 2 √, 4 sg, 8 gd |  |
-/// | `forward_dynamics_base` | 227, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics_from_actuators` | 232, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `inverse_dynamics_base` | 182, 2 √, 4 sg, 7 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 146, 4 sc, 4 sg, 3 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 210, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `mass_matrix` | 110, 2 √, 6 gd |  |
+/// | `mass_matrix_base` | 96, 2 √, 6 gd |  |
+/// | `bias` | 183, 2 √, 4 sg, 6 gd |  |
+/// | `bias_base` | 158, 2 √, 4 sg, 6 gd |  |
+/// | `forward_dynamics` | 260, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics_base` | 226, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// # Names
@@ -70,6 +70,7 @@
 /// | `det_left` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
 /// | `k_left` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
 /// | `k1_left` | k_i | common factor of one of the leg's wrenches |
+/// | `fk1_x_left` | f_i/k | that force without the factor k, in the leg's axes |
 /// | `rate_1_left` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_left` | u_i² | square of a joint rate |
 /// | `rate_dot_1_left` | u̇_i | derivative of that rate, eq. (10) |
@@ -81,14 +82,12 @@
 /// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
 /// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_x_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment2_z_left` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
 /// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
 /// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
@@ -1905,7 +1904,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 155 operations (46 additions, 106 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 12 negations, 135 intermediates.
+    /// 153 operations (48 additions, 102 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 133 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1942,104 +1941,101 @@ impl FiveBar {
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         // --- left
         let inv_s2_left = 1.0 / s2_left;
-        let k1_left = INV_L_1 * inv_s2_left;
-        let c12_left = c1_left * c2_left - s1_left * s2_left;
-        let s12_left = s1_left * c2_left + c1_left * s2_left;
+        let fk1_x_left = c2_left * inv_s2_left;
+        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+            + s1_left * acceleration[1];
+        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+            + c1_left * acceleration[1] - s1_left * acceleration[0];
+        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+        let rate_1_left = INV_L_1 * t2_left;
+        let t3_left = t2_left * rate_1_left;
         let k2_left = INV_L_2 * inv_s2_left;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let minus_rate_2_left = minus_g2_vx_left * twist[0]
-            + minus_g2_vy_left * twist[1];
+        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
         let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
-        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
-            + l_2_rate_2_squared_left;
-        let g1_vx_left = c12_left * k1_left;
-        let g1_vy_left = s12_left * k1_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let rate_1_squared_left = rate_1_left * rate_1_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
-        let rate_dot_1_left = k1_left
-            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let t4_left = a_on_f1_left + fk1_x_left * t3_left
+            + rate_2_squared_left * (L_2 * inv_s2_left);
+        let rate_dot_1_left = INV_L_1 * t4_left;
         let a1_y_left = 9.81 * c1_left;
         let a1_x_left = 9.81 * s1_left;
-        // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
+        let minus_g2_vx_left = c1_left * k2_left;
         let inv_s2_right = 1.0 / s2_right;
-        let k1_right = INV_L_1 * inv_s2_right;
-        let g1_vy_right = s12_right * k1_right;
-        let g1_vx_right = c12_right * k1_right;
-        let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        let fk1_x_right = c2_right * inv_s2_right;
+        let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
+        let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
+        let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
+        let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
+        let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
+            - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
         ::overact::guard::platform(
             det_ja,
-            22.615508735629227,
+            0.9046203494251691,
             ::overact::ActuatorGroup::Kept,
         )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let l_1_per_det_ja = L_1 / det_ja;
+        let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
+        let minus_g2_vy_left = s1_left * k2_left;
+        let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
         let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
-        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
-            + l_1_rate_1_squared_left;
+        let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
         let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+            * (a_on_f2_left + t1_left * minus_rate_2_left);
         let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-        let minus_vy_by_a2 = g1_vx_left * inv_det_ja;
-        let vx_by_a2 = g1_vy_left * inv_det_ja;
-        let g2_a2_left = minus_g2_vy_left * minus_vy_by_a2 - minus_g2_vx_left * vx_by_a2;
-        let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
+        let minus_g2_a2_left = k2_left * l_1_per_det_ja;
+        let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
         let t1_platform = acceleration[1] + 9.81;
         let m_platform_on_q1_left = vy_by_a1 * t1_platform
             - minus_vx_by_a1 * acceleration[0];
         let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
+        let t5_left = a1_y_left + t4_left;
+        let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
+        let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
         let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
             - minus_vy_by_a2 * t1_platform;
         let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
-            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        // --- right
+        let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
+            + s1_right * acceleration[1];
+        let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
+            + c1_right * acceleration[1] - s1_right * acceleration[0];
+        let c1_vx_plus_s1_vy_right = c1_right * twist[0] + s1_right * twist[1];
+        let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
+        let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
+        let rate_1_right = INV_L_1 * t2_right;
+        let t3_right = t2_right * rate_1_right;
         let k2_right = INV_L_2 * inv_s2_right;
-        let minus_g2_vx_right = c1_right * k2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
+        let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
+        let t4_right = a_on_f1_right + fk1_x_right * t3_right
+            + rate_2_squared_right * (L_2 * inv_s2_right);
+        let rate_dot_1_right = INV_L_1 * t4_right;
         let a1_y_right = 9.81 * c1_right;
         let a1_x_right = 9.81 * s1_right;
-        let g2_a1_right = minus_g2_vx_right * minus_vx_by_a1
-            - minus_g2_vy_right * vy_by_a1;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
+        let g2_a1_right = l_1_per_det_ja * k2_right;
+        let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
         let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+            * (a_on_f2_right + t1_right * minus_rate_2_right);
         let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
         let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
             - minus_g2_vx_right * vx_by_a2;
         let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
-            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let t5_right = a1_y_right + t4_right;
+        let a2_x_right = c2_right * (a1_x_right - t3_right) + s2_right * t5_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
                 rate_dot_1_left, a1_y_left, -a1_x_left, rate_dot_1_left, rate_1_left,
-                ::overact::math::sign(rate_1_left), 1.0, -minus_zz_2_left_on_q1_left,
+                ::overact::math::sign(t2_left), 1.0, -minus_zz_2_left_on_q1_left,
                 inv_l_2_m_platform_on_q1_left
                     - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
-                            - 1.5625 * minus_zz_2_left_on_q1_left),
-                L_1_PER_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
-                L_1 * a1_y_plus_l_1_rate_dot_1_left,
+                        * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left),
+                L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left,
+                L_1 * t5_left,
                 -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
                 0.0,
                 0.0,
@@ -2056,18 +2052,17 @@ impl FiveBar {
                 m_platform_on_q1_left,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
-                inv_l_2_m_platform_on_q1_right + L_2 * minus_zz_2_left_on_q1_right,
-                -(g2_a2_left * a2_x_left), 0.0,
-                -::overact::math::signed(g2_a2_left, minus_qd_2_left), rate_dot_1_right, a1_y_right,
-                -a1_x_right, rate_dot_1_right, rate_1_right, ::overact::math::sign(rate_1_right),
-                1.0, -minus_zz_2_right_on_q1_right,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
+                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                minus_g2_a2_left * a2_x_left, 0.0,
+                ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left), rate_dot_1_right,
+                a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
+                ::overact::math::sign(t2_right), 1.0, -minus_zz_2_right_on_q1_right,
                 inv_l_2_m_platform_on_q1_right
                     - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
-                            - 1.5625 * minus_zz_2_right_on_q1_right),
-                L_1_PER_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                L_1 * a1_y_plus_l_1_rate_dot_1_right,
+                        * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right),
+                L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
+                L_1 * t5_right,
                 -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
                 m_platform_on_q1_right,
             ],
@@ -2947,7 +2942,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 137 operations (40 additions, 94 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 12 negations, 123 intermediates.
+    /// 135 operations (42 additions, 90 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 121 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2980,104 +2975,101 @@ impl FiveBar {
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
         let inv_s2_right = 1.0 / s2_right;
-        let k1_right = INV_L_1 * inv_s2_right;
-        let g1_vx_right = c12_right * k1_right;
+        let fk1_x_right = c2_right * inv_s2_right;
+        let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
         // --- left
-        let c12_left = c1_left * c2_left - s1_left * s2_left;
-        let s12_left = s1_left * c2_left + c1_left * s2_left;
         let inv_s2_left = 1.0 / s2_left;
-        let k1_left = INV_L_1 * inv_s2_left;
-        let g1_vy_left = s12_left * k1_left;
-        let g1_vx_left = c12_left * k1_left;
-        let g1_vy_right = s12_right * k1_right;
-        let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        let fk1_x_left = c2_left * inv_s2_left;
+        let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
+        let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
+        let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
+        let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
+            - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
         ::overact::guard::platform(
             det_ja,
-            22.615508735629227,
+            0.9046203494251691,
             ::overact::ActuatorGroup::Kept,
         )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let l_1_per_det_ja = L_1 / det_ja;
+        let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
         let t1_platform = acceleration[1] + 9.81;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let vx_by_a2 = g1_vy_left * inv_det_ja;
-        let minus_vy_by_a2 = g1_vx_left * inv_det_ja;
+        let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
+        let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
+        let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
+        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+            + s1_left * acceleration[1];
+        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+            + c1_left * acceleration[1] - s1_left * acceleration[0];
+        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+        let rate_1_left = INV_L_1 * t2_left;
+        let t3_left = t2_left * rate_1_left;
         let k2_left = INV_L_2 * inv_s2_left;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let minus_rate_2_left = minus_g2_vx_left * twist[0]
-            + minus_g2_vy_left * twist[1];
+        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
         let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
-        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
-            + l_2_rate_2_squared_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let rate_1_squared_left = rate_1_left * rate_1_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
-        let rate_dot_1_left = k1_left
-            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let t4_left = a_on_f1_left + fk1_x_left * t3_left
+            + rate_2_squared_left * (L_2 * inv_s2_left);
+        let rate_dot_1_left = INV_L_1 * t4_left;
         // --- right
+        let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
+            + s1_right * acceleration[1];
+        let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
+            + c1_right * acceleration[1] - s1_right * acceleration[0];
+        let c1_vx_plus_s1_vy_right = c1_right * twist[0] + s1_right * twist[1];
+        let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
+        let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
+        let rate_1_right = INV_L_1 * t2_right;
+        let t3_right = t2_right * rate_1_right;
         let k2_right = INV_L_2 * inv_s2_right;
-        let minus_g2_vx_right = c1_right * k2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
+        let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
+        let t4_right = a_on_f1_right + fk1_x_right * t3_right
+            + rate_2_squared_right * (L_2 * inv_s2_right);
+        let rate_dot_1_right = INV_L_1 * t4_right;
         let a1_y_left = 9.81 * c1_left;
         let a1_y_right = 9.81 * c1_right;
         let a1_x_left = 9.81 * s1_left;
         let a1_x_right = 9.81 * s1_right;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
-        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
-            + l_1_rate_1_squared_left;
+        let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
         let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        let g2_a2_left = minus_g2_vy_left * minus_vy_by_a2 - minus_g2_vx_left * vx_by_a2;
-        let g2_a1_right = minus_g2_vx_right * minus_vx_by_a1
-            - minus_g2_vy_right * vy_by_a1;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
+            * (a_on_f2_left + t1_left * minus_rate_2_left);
+        let minus_g2_a2_left = l_1_per_det_ja * k2_left;
+        let g2_a1_right = l_1_per_det_ja * k2_right;
+        let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
         let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+            * (a_on_f2_right + t1_right * minus_rate_2_right);
+        let minus_g2_vy_right = s1_right * k2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
         let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
             - minus_g2_vx_right * vx_by_a2;
-        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
-            + s2_left * (a1_y_left + L_1 * rate_dot_1_left);
-        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let a2_x_left = c2_left * (a1_x_left - t3_left)
+            + s2_left * (a1_y_left + t4_left);
+        let a2_x_right = c2_right * (a1_x_right - t3_right)
+            + s2_right * (a1_y_right + t4_right);
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
                 vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0], rate_dot_1_left, 0.0,
-                a1_y_left, 0.0, -a1_x_left, 0.0, rate_1_left, 0.0,
-                ::overact::math::sign(rate_1_left), 0.0, 1.0, 0.0,
-                -(g2_a1_left * minus_rate_dot_2_left), -(g2_a1_right * minus_rate_dot_2_right),
-                L_1_PER_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
-                -(g2_a1_right * a2_x_right),
+                a1_y_left, 0.0, -a1_x_left, 0.0, rate_1_left, 0.0, ::overact::math::sign(t2_left),
+                0.0, 1.0, 0.0, -(g2_a1_left * minus_rate_dot_2_left),
+                -(g2_a1_right * minus_rate_dot_2_right),
+                L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
                 -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
                 -::overact::math::signed(g2_a1_right, minus_qd_2_right),
             ],
             [
                 vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform, 0.0, rate_dot_1_right,
                 0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
-                ::overact::math::sign(rate_1_right), 0.0, 1.0,
-                -(g2_a2_left * minus_rate_dot_2_left), -(g2_a2_right * minus_rate_dot_2_right),
-                -(g2_a2_left * a2_x_left),
-                L_1_PER_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                -::overact::math::signed(g2_a2_left, minus_qd_2_left),
+                ::overact::math::sign(t2_right), 0.0, 1.0, minus_g2_a2_left * minus_rate_dot_2_left,
+                -(g2_a2_right * minus_rate_dot_2_right), minus_g2_a2_left * a2_x_left,
+                L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
+                ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left),
                 -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
             ],
         ])
@@ -3361,7 +3353,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 222 operations (86 additions, 125 multiplications, 11 divisions), 2 square roots, 4 signs, 7 guards, 222 intermediates.
+    /// 206 operations (82 additions, 117 multiplications, 7 divisions), 2 square roots, 4 signs, 7 guards, 206 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3379,14 +3371,16 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
@@ -3403,54 +3397,49 @@ impl FiveBar {
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let a1_y_left = 49.05 * l1_x_left;
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let a1_x_left = 49.05 * l1_y_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let l2_y_left = pose[1] - l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let g2_vx_left = l1_x_left / det_left;
-        let g2_vy_left = l1_y_left / det_left;
+        let k_left = 1.0 / det_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
             + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vx_left = l2_x_left / det_left;
-        let minus_g1_vy_left = l2_y_left / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
-        let minus_rate_dot_1_left = (a_on_f1_left + rate_1_squared_left * t3_left)
-            / det_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t2_left);
         let minus_a_on_f2_left = l1_x_left * acceleration[0]
             + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let rate_dot_2_left = (minus_a_on_f2_left + rate_2_squared_left * t3_left)
-            / det_left;
-        let minus_force2_x_left = parameters[8] * rate_2_squared_left
-            + parameters[9] * rate_dot_2_left;
-        let c2_left = INV_HALF * t2_left;
-        let force2_y_left = parameters[8] * rate_dot_2_left
-            - parameters[9] * rate_2_squared_left;
-        let t4_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
+        let t3_left = a1_y_left
+            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
             - parameters[2] * a1_x_left
-            - minus_rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
-            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
+            - minus_rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
+            + INV_L_2 * (parameters[9] * minus_a_on_f2_left);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -3460,76 +3449,73 @@ impl FiveBar {
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         // --- left
-        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - L_1 * rate_1_squared_left;
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
-        let a2_y_left = minus_s2_left * a1_x_minus_l_1_rate_1_squared_left
-            + c2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
-            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+        let moment2_z_left = rate_dot_2_left * (parameters[7] - L_2 * parameters[8])
             - parameters[9] * a2_x_left;
         let force_on_u2_left = moment2_z_left + tau_2_left;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let minus_g2_vy_right = l1_y_right * k_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let c2_right = INV_HALF * t2_right;
-        let a1_y_right = 49.05 * l1_x_right;
         let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
         let minus_g2_vx_right = l1_x_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a1_y_right = 49.05 * l1_x_right;
         let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
             + L_2_SQUARED * rate_2_squared_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t3_right = TWICE_L_2 * t2_right;
         let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let t4_right = a1_x_right - L_1 * rate_1_squared_right;
-        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t4_right;
-        let a2_x_right = c2_right * t4_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
-            - parameters[19] * minus_rate_dot_2_right;
+            * (a_on_f1_right + rate_1_squared_right * t2_right);
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let minus_moment2_z_right = minus_rate_dot_2_right
+            * (parameters[19] - L_2 * parameters[20]) + parameters[21] * a2_x_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+        let t1_platform = parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
+        let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
             t1,
             22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let t2 = (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform) / t1;
-        let force_x_platform = acceleration[0] * parameters[24];
-        let t3 = (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
-            + force_x_platform) / t1;
-        let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right;
-        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
-            + parameters[21] * rate_2_squared_right;
-        let t5_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
-            + a1_y_right * (parameters[13] + L_1 * parameters[22])
+        let t2 = (g2_vy_left * force_on_u2_left
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
+        let force_x_platform = acceleration[0] * t1_platform;
+        let t3 = (g2_vx_left * force_on_u2_left
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
+        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
+        let t3_right = rate_dot_1_right
+            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+            + a1_y_right * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - parameters[14] * a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+            + INV_L_2 * (minus_a_on_f2_right * parameters[21]);
         let tau_1_right = parameters[15] * rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t5_right + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right + t3_right + tau_1_right;
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
             force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
@@ -3706,7 +3692,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 248 operations (96 additions, 144 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 251 intermediates.
+    /// 232 operations (92 additions, 132 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 235 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3727,17 +3713,25 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
         const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -3750,11 +3744,10 @@ impl FiveBar {
         let bias_a1_y_left = 49.05 * l1_x_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let k_left = 1.0 / det_left;
-        let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
@@ -3795,9 +3788,10 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
@@ -3807,9 +3801,10 @@ impl FiveBar {
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         let minus_dvx = t2
@@ -3822,70 +3817,60 @@ impl FiveBar {
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
         let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
             - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t2_left);
-        let force2_x_left = parameters[9] * minus_rate_dot_2_left
-            - rate_2_squared_left * parameters[8];
-        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
-        let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
-            + rate_2_squared_left * parameters[9];
-        let t3_left = actuator_accelerations[0]
-            * (parameters[0] + L_1_SQUARED * parameters[10])
-            + bias_a1_y_left * (parameters[1] + L_1 * parameters[10])
-            - bias_a1_x_left * parameters[2]
-            - L_1 * (minus_s2_left * force2_x_left + c2_left * minus_force2_y_left);
+        let t4_left = actuator_accelerations[0]
+            * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
+            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - bias_a1_x_left * parameters[2] - INV_L_2 * (parameters[9] * a_on_f2_left);
         let tau_1_left = actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
         let qd_2_left = rate_2_left - actuator_velocities[0];
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
-        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
-        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-            + L_1 * actuator_accelerations[0];
-        let a2_y_left = minus_s2_left * t4_left + c2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let a2_x_left = c2_left * t4_left - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let moment2_z_left = parameters[8] * a2_y_left - parameters[9] * a2_x_left
-            - parameters[7] * minus_rate_dot_2_left;
-        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+        let minus_moment2_z_left = minus_rate_dot_2_left
+            * (parameters[7] - L_2 * parameters[8]) + parameters[9] * a2_x_left;
+        let force_on_u2_left = tau_2_left - minus_moment2_z_left;
         // --- right
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
             - minus_bias_a_on_f2_right;
         let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t2_right);
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-            + L_1 * actuator_accelerations[1];
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+            * (a_on_f2_right - rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
-        let t3_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t3_right;
-        let a2_x_right = c2_right * t3_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let moment2_z_right = parameters[19] * rate_dot_2_right
-            + parameters[20] * a2_y_right - parameters[21] * a2_x_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let moment2_z_right = rate_dot_2_right * (parameters[19] - L_2 * parameters[20])
+            - parameters[21] * a2_x_right;
         let qd_2_right = rate_2_right - actuator_velocities[1];
         let tau_2_right = ::overact::math::signed(parameters[23], qd_2_right);
         let force_on_u2_right = moment2_z_right + tau_2_right;
-        let force_y_platform = parameters[24] * (dvy + 9.81);
+        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+        let t1_platform = parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
+        let force_y_platform = (dvy + 9.81) * t1_platform;
         let t3 = t2
             * (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
                 + force_y_platform);
-        let minus_force_x_platform = minus_dvx * parameters[24];
+        let minus_force_x_platform = minus_dvx * t1_platform;
         let t4 = t2
             * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
                 - minus_force_x_platform);
-        let force2_y_right = parameters[20] * rate_dot_2_right
-            - rate_2_squared_right * parameters[21];
-        let minus_force2_x_right = rate_2_squared_right * parameters[20]
-            + parameters[21] * rate_dot_2_right;
+        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
         let t4_right = actuator_accelerations[1]
-            * (parameters[12] + L_1_SQUARED * parameters[22])
-            + bias_a1_y_right * (parameters[13] + L_1 * parameters[22])
+            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+            + bias_a1_y_right
+                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - bias_a1_x_right * parameters[14]
-            + L_1 * (c2_right * force2_y_right - s2_right * minus_force2_x_right);
+            - INV_L_2 * (a_on_f2_right * parameters[21]);
         let tau_1_right = actuator_accelerations[1] * parameters[15]
             + actuator_velocities[1] * parameters[16]
             + ::overact::math::signed(parameters[17], actuator_velocities[1])
@@ -3906,7 +3891,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 186 operations (70 additions, 109 multiplications, 7 divisions), 2 square roots, 4 signs, 7 guards, 186 intermediates.
+    /// 182 operations (70 additions, 99 multiplications, 13 divisions), 2 square roots, 4 signs, 7 guards, 182 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3924,8 +3909,8 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -3941,19 +3926,17 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let a1_y_left = 49.05 * l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let a1_x_left = 49.05 * l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         let k_left = 1.0 / det_left;
         let l2_x_left = d_x_left - l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let g2_vx_left = l1_x_left * k_left;
         let g2_vy_left = l1_y_left * k_left;
@@ -3966,22 +3949,22 @@ impl FiveBar {
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            * (a_on_f1_left + rate_1_squared_left * t2_left);
+        let a1_x_left = 49.05 * l1_y_left;
+        let moment1_z_left = base_parameters[3] * a1_y_left
+            - base_parameters[1] * minus_rate_dot_1_left
+            - base_parameters[5] * a1_x_left;
         let tau_1_left = base_parameters[11]
             - (base_parameters[7] * minus_rate_1_left
                 + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let t4_left = base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
-            - base_parameters[1] * minus_rate_dot_1_left
-            + L_1 * (minus_a_on_f2_left * (L_1_PER_HALF_SQUARED * base_parameters[15]))
-            + tau_1_left;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u1_left = t4_left - tau_2_left;
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + minus_a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3994,12 +3977,11 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
+        let g1_vx_right = l2_x_right / det_right;
         // --- left
         let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
@@ -4008,29 +3990,28 @@ impl FiveBar {
         let force_on_u2_left = moment2_z_left + tau_2_left;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
+        let g1_vy_right = l2_y_right / det_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let minus_a_on_f2_right = l1_x_right * acceleration[0]
             + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vx_right = l1_x_right / det_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let minus_rate_dot_2_right = (minus_a_on_f2_right
+            + rate_2_squared_right * t2_right) / det_right;
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a1_y_right = 49.05 * l1_x_right;
         let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
             + L_2_SQUARED * rate_2_squared_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let rate_dot_1_right = (a_on_f1_right + rate_1_squared_right * t2_right)
+            / det_right;
         let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
         let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
@@ -4053,14 +4034,13 @@ impl FiveBar {
         let force_x_platform = acceleration[0] * base_parameters[0];
         let t3 = (g2_vx_left * force_on_u2_left
             + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
+        let moment1_z_right = base_parameters[2] * rate_dot_1_right
+            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right;
         let tau_1_right = base_parameters[8] * rate_1_right
             + ::overact::math::signed(base_parameters[10], rate_1_right)
             + base_parameters[12];
-        let t4_right = base_parameters[2] * rate_dot_1_right
-            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
-            + L_1 * (minus_a_on_f2_right * (L_1_PER_HALF_SQUARED * base_parameters[16]))
-            + tau_1_right;
-        let force_on_u1_right = minus_tau_2_right + t4_right;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + minus_a_on_f2_right * (INV_L_2 * base_parameters[16]) + minus_tau_2_right;
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
             force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
@@ -4077,7 +4057,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 147 operations (52 additions, 90 multiplications, 5 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 153 intermediates.
+    /// 146 operations (52 additions, 88 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 152 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4148,8 +4128,7 @@ impl FiveBar {
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let inv_s2_right = 1.0 / s2_right;
-        let k1_right = INV_L_1 * inv_s2_right;
+        let k1_right = INV_L_1 / s2_right;
         let g1_vx_right = c12_right * k1_right;
         // --- left
         let minus_rate_dot_2_left = k2_left
@@ -4159,7 +4138,7 @@ impl FiveBar {
             + base_parameters[15] * a2_x_left;
         let minus_force_on_u2_left = minus_moment2_z_left + minus_tau_2_left;
         // --- right
-        let k2_right = INV_L_2 * inv_s2_right;
+        let k2_right = INV_L_2 / s2_right;
         let minus_g2_vy_right = s1_right * k2_right;
         let g1_vy_right = s12_right * k1_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
@@ -4225,7 +4204,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 211 operations (80 additions, 118 multiplications, 13 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 214 intermediates.
+    /// 210 operations (80 additions, 122 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 213 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4246,6 +4225,10 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -4269,6 +4252,11 @@ impl FiveBar {
         let bias_a1_y_left = 49.05 * l1_x_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
+        let moment1_z_left = actuator_accelerations[0] * base_parameters[1]
+            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5];
+        let tau_1_left = actuator_velocities[0] * base_parameters[7]
+            + ::overact::math::signed(base_parameters[9], actuator_velocities[0])
+            + base_parameters[11];
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -4286,12 +4274,13 @@ impl FiveBar {
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g1_vy_right = l2_y_right / det_right;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right / det_right;
+        let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
             t1,
@@ -4312,21 +4301,23 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
-        let minus_g2_vx_right = l1_x_right / det_right;
-        let minus_g2_vy_right = l1_y_right / det_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = (bias_a_on_f1_right
-            + rate_1_squared_right * t2_right) / det_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         let minus_dvx = t2
@@ -4335,23 +4326,17 @@ impl FiveBar {
         let dvy = t2
             * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                 + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        // --- left
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
         let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
             - minus_bias_a_on_f2_left;
-        let tau_1_left = actuator_velocities[0] * base_parameters[7]
-            + ::overact::math::signed(base_parameters[9], actuator_velocities[0])
-            + base_parameters[11];
-        let t3_left = actuator_accelerations[0] * base_parameters[1]
-            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5]
-            - L_1 * (a_on_f2_left * (L_1_PER_HALF_SQUARED * base_parameters[15]))
-            + tau_1_left;
         let qd_2_left = rate_2_left - actuator_velocities[0];
         let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u1_left = t3_left - tau_2_left;
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            - a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
+        // --- left
         let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t2_left);
-        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
+            * (a_on_f2_left - rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
@@ -4362,9 +4347,9 @@ impl FiveBar {
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
             - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = (a_on_f2_right - rate_2_squared_right * t2_right)
-            / det_right;
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
@@ -4383,14 +4368,14 @@ impl FiveBar {
         let t4 = t2
             * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
                 - minus_force_x_platform);
+        let moment1_z_right = actuator_accelerations[1] * base_parameters[2]
+            + bias_a1_y_right * base_parameters[4]
+            - bias_a1_x_right * base_parameters[6];
         let tau_1_right = actuator_velocities[1] * base_parameters[8]
             + ::overact::math::signed(base_parameters[10], actuator_velocities[1])
             + base_parameters[12];
-        let t3_right = actuator_accelerations[1] * base_parameters[2]
-            + bias_a1_y_right * base_parameters[4] - bias_a1_x_right * base_parameters[6]
-            - L_1 * (a_on_f2_right * (L_1_PER_HALF_SQUARED * base_parameters[16]))
-            + tau_1_right;
-        let force_on_u1_right = t3_right - tau_2_right;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            - a_on_f2_right * (INV_L_2 * base_parameters[16]) - tau_2_right;
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
             force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
@@ -4404,7 +4389,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
+    /// 110 operations (43 additions, 55 multiplications, 12 divisions), 2 square roots, 6 guards, 109 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4430,9 +4415,8 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -4511,7 +4495,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
+    /// 96 operations (35 additions, 49 multiplications, 12 divisions), 2 square roots, 6 guards, 95 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4537,18 +4521,16 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
+        let g2_vx_left = l1_x_left / det_left;
         let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vx_left = l2_x_left / det_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let force1_y_by_2_left = minus_s2_left * base_parameters[15];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
@@ -4582,8 +4564,8 @@ impl FiveBar {
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
+        let g2_vy_left = l1_y_left / det_left;
         let t2_left = g2_vy_left * base_parameters[13]
             - masses_left_1_2 * minus_g1_vy_left;
         let t3_left = g2_vy_left * masses_left_1_2
@@ -4618,7 +4600,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 198 operations (77 additions, 110 multiplications, 11 divisions), 2 square roots, 4 signs, 6 guards, 198 intermediates.
+    /// 183 operations (71 additions, 108 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 183 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4632,8 +4614,6 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_2
         const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
@@ -4642,177 +4622,8 @@ impl FiveBar {
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let g2_vx_left = l1_x_left / det_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left / det_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left / det_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left / det_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
-        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
-            + rate_2_squared_left * t3_left) / det_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
-        let c2_left = INV_HALF * t2_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
-            + rate_1_squared_left * t3_left) / det_left;
-        let t5_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
-        let bias_a2_y_left = minus_s2_left * t4_left + c2_left * t5_left;
-        let bias_a2_x_left = c2_left * t4_left - minus_s2_left * t5_left;
-        let moment2_z_left = parameters[7] * bias_rate_dot_2_left
-            + parameters[8] * bias_a2_y_left - parameters[9] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = parameters[1] * bias_a1_y_left
-            - parameters[0] * minus_bias_rate_dot_1_left
-            - parameters[2] * bias_a1_x_left;
-        let tau_1_left = parameters[6]
-            - (parameters[3] * minus_bias_rate_dot_1_left
-                + parameters[4] * minus_rate_1_left
-                + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let v2_by_1_y_left = t2_left + t2_left;
-        let force2_y_left = parameters[8] * bias_rate_dot_2_left
-            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let force2_x_left = parameters[10] * bias_a2_x_left
-            - (parameters[8] * rate_2_squared_left
-                + parameters[9] * bias_rate_dot_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
-            - tau_2_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
-            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
-        let tau_1_right = parameters[15] * bias_rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let v2_by_1_x_right = INV_L_2 * det_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
-        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
-        let v2_by_1_y_right = t2_right + t2_right;
-        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
-        let force2_y_right = parameters[22] * bias_a2_y_right
-            - (parameters[20] * minus_bias_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right);
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
-        let moment2_z_right = parameters[20] * bias_a2_y_right
-            - parameters[19] * minus_bias_rate_dot_2_right
-            - parameters[21] * bias_a2_x_right;
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let force_y_platform = 9.81 * parameters[24];
-        ::core::result::Result::Ok([
-            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-                + g1_vx_right * force_on_u1_right
-                - minus_g2_vx_right * force_on_u2_right,
-            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-                + force_y_platform,
-        ])
-    }
-    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
-    ///
-    /// From the platform's pose and motion.
-    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
-    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
-    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
-    ///
-    /// Output: 2.
-    ///
-    /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
-    ///
-    /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
-    pub fn bias_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
-        )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
@@ -4844,39 +4655,43 @@ impl FiveBar {
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let bias_a1_x_left = 49.05 * l1_y_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-            - base_parameters[15] * bias_a2_x_left;
+        let moment2_z_left = bias_rate_dot_2_left * (parameters[7] - L_2 * parameters[8])
+            - parameters[9] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let tau_1_left = base_parameters[11]
-            - (base_parameters[7] * minus_rate_1_left
-                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[5] * bias_a1_x_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            - base_parameters[15] * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
-            + tau_1_left - tau_2_left;
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
+        let t3_left = bias_a1_y_left
+            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - parameters[2] * bias_a1_x_left
+            - minus_bias_rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
+            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9]);
+        let tau_1_left = parameters[6]
+            - (parameters[3] * minus_bias_rate_dot_1_left
+                + parameters[4] * minus_rate_1_left
+                + ::overact::math::signed(parameters[5], minus_rate_1_left));
+        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -4895,33 +4710,189 @@ impl FiveBar {
             + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
+            parameters[23],
             minus_qd_2_right,
         );
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let t3_right = bias_rate_dot_1_right
+            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+            + bias_a1_y_right
+                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+            - parameters[14] * bias_a1_x_right
+            + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
+        let tau_1_right = parameters[15] * bias_rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t3_right + tau_1_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+        let minus_moment2_z_right = minus_bias_rate_dot_2_right
+            * (parameters[19] - L_2 * parameters[20]) + parameters[21] * bias_a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_y_platform = 9.81
+            * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
+        ::core::result::Result::Ok([
+            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                + g1_vx_right * force_on_u1_right
+                + minus_g2_vx_right * minus_force_on_u2_right,
+            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                + g1_vy_right * force_on_u1_right
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
+        ])
+    }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 158 operations (59 additions, 88 multiplications, 11 divisions), 2 square roots, 4 signs, 6 guards, 158 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn bias_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let bias_rate_dot_2_left = k_left
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+            - base_parameters[15] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            - base_parameters[5] * bias_a1_x_left;
+        let tau_1_left = base_parameters[11]
+            - (base_parameters[7] * minus_rate_1_left
+                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + minus_bias_a_on_f2_left * (base_parameters[15] * INV_L_2) - tau_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let g1_vx_right = l2_x_right / det_right;
+        let minus_g2_vx_right = l1_x_right / det_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right / det_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = (bias_a_on_f1_right
+            + rate_1_squared_right * t3_right) / det_right;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right
+            - base_parameters[6] * bias_a1_x_right;
         let tau_1_right = base_parameters[8] * rate_1_right
             + ::overact::math::signed(base_parameters[10], rate_1_right)
             + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right
-            + base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            - base_parameters[16] * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
-            + tau_1_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + minus_bias_a_on_f2_right * (INV_L_2 * base_parameters[16])
+            + minus_tau_2_right;
+        let minus_bias_rate_dot_2_right = (minus_bias_a_on_f2_right
+            + rate_2_squared_right * t3_right) / det_right;
         let c2_right = INV_HALF * t2_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - l_1_rate_1_squared_right)
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
         let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
             + base_parameters[16] * bias_a2_x_right;
@@ -4946,7 +4917,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 272 operations (105 additions, 159 multiplications, 8 divisions), 2 square roots, 4 signs, 8 guards, 272 intermediates.
+    /// 260 operations (103 additions, 149 multiplications, 8 divisions), 2 square roots, 4 signs, 8 guards, 260 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4963,6 +4934,10 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -4977,8 +4952,9 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -5013,39 +4989,38 @@ impl FiveBar {
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
         let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let c2_left = INV_HALF * t2_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
-        let t3_left = bias_a1_x_left - L_1 * rate_1_squared_left;
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let t4_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
-        let bias_a2_y_left = minus_s2_left * t3_left + c2_left * t4_left;
-        let bias_a2_x_left = c2_left * t3_left - minus_s2_left * t4_left;
-        let moment2_z_left = parameters[7] * bias_rate_dot_2_left
-            + parameters[8] * bias_a2_y_left - parameters[9] * bias_a2_x_left;
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = bias_rate_dot_2_left
+            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
+            - parameters[9] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let force1_y_by_1_left = parameters[1] + L_1 * parameters[10];
-        let t5_left = parameters[0] + L_1_SQUARED * parameters[10];
-        let minus_force2_x_left = parameters[8] * rate_2_squared_left
-            + parameters[9] * bias_rate_dot_2_left;
-        let force2_y_left = parameters[8] * bias_rate_dot_2_left
-            - parameters[9] * rate_2_squared_left;
-        let t6_left = bias_a1_y_left * force1_y_by_1_left
-            - parameters[2] * bias_a1_x_left - minus_bias_rate_dot_1_left * t5_left
-            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
+        let t4_left = bias_a1_y_left
+            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - parameters[2] * bias_a1_x_left
+            - minus_bias_rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
+            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9]);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_bias_rate_dot_1_left
                 + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let force_on_u1_left = t6_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
@@ -5063,48 +5038,48 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let t3_right = parameters[12] + L_1_SQUARED * parameters[22];
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
-        let force1_y_by_1_right = parameters[13] + L_1 * parameters[22];
         let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
-        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right;
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let minus_force2_y_right = parameters[20] * minus_bias_rate_dot_2_right
-            + parameters[21] * rate_2_squared_right;
-        let t4_right = bias_rate_dot_1_right * t3_right
-            + bias_a1_y_right * force1_y_by_1_right - parameters[14] * bias_a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let t4_right = bias_rate_dot_1_right
+            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+            + bias_a1_y_right
+                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+            - parameters[14] * bias_a1_x_right
+            + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
         let tau_1_right = parameters[15] * bias_rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
         let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let t6_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let bias_a2_y_right = c2_right * t5_right - s2_right * t6_right;
-        let bias_a2_x_right = c2_right * t6_right + s2_right * t5_right;
-        let moment2_z_right = parameters[20] * bias_a2_y_right
-            - parameters[21] * bias_a2_x_right
-            - parameters[19] * minus_bias_rate_dot_2_right;
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+        let minus_moment2_z_right = minus_bias_rate_dot_2_right
+            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+            + parameters[21] * bias_a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
         let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
             - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
                 + g1_vx_right * force_on_u1_right
-                - minus_g2_vx_right * force_on_u2_right);
+                + minus_g2_vx_right * minus_force_on_u2_right);
         let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let masses_left_1_1 = t5_left + parameters[3];
-        let masses_right_1_1 = t3_right + parameters[15];
+        let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
+            + parameters[3];
+        let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
+            + parameters[15];
         let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
         let masses_right_1_2 = L_1 * force1_y_by_2_right;
-        let t7_right = g2_vx_left
+        let t5_right = g2_vx_left
             * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
                 * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
@@ -5112,29 +5087,29 @@ impl FiveBar {
                 * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
                 * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
-        let mass_1_1 = t7_right + parameters[24];
+        let mass_1_1 = t5_right + parameters[24];
         ::overact::guard::mass(mass_1_1)?;
-        let inv_pivot_1 = 1.0 / mass_1_1;
-        let t7_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
-        let t8_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
-        let t8_right = g1_vy_right * masses_right_1_1
+        let t5_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t6_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
+        let t6_right = g1_vy_right * masses_right_1_1
             - minus_g2_vy_right * masses_right_1_2;
-        let t9_right = g1_vy_right * masses_right_1_2
+        let t7_right = g1_vy_right * masses_right_1_2
             - minus_g2_vy_right * parameters[19];
-        let mass_1_2 = g2_vx_left * t7_left - minus_g1_vx_left * t8_left
-            + g1_vx_right * t8_right - minus_g2_vx_right * t9_right;
-        let l_2_1 = mass_1_2 * inv_pivot_1;
-        let force_y_platform = 9.81 * parameters[24];
+        let mass_1_2 = g2_vx_left * t5_left - minus_g1_vx_left * t6_left
+            + g1_vx_right * t6_right - minus_g2_vx_right * t7_right;
+        let l_2_1 = mass_1_2 / mass_1_1;
+        let force_y_platform = 9.81
+            * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
         let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
             - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-                + force_y_platform);
-        let mass_2_2 = g2_vy_left * t7_left - minus_g1_vy_left * t8_left
-            + g1_vy_right * t8_right - minus_g2_vy_right * t9_right + parameters[24];
+                + g1_vy_right * force_on_u1_right
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform);
+        let mass_2_2 = g2_vy_left * t5_left - minus_g1_vy_left * t6_left
+            + g1_vy_right * t6_right - minus_g2_vy_right * t7_right + parameters[24];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -5146,7 +5121,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 227 operations (85 additions, 132 multiplications, 10 divisions), 2 square roots, 4 signs, 8 guards, 227 intermediates.
+    /// 226 operations (85 additions, 125 multiplications, 16 divisions), 2 square roots, 4 signs, 8 guards, 226 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5184,8 +5159,7 @@ impl FiveBar {
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
+        let g1_vx_right = l2_x_right / det_right;
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -5244,10 +5218,10 @@ impl FiveBar {
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
+        let g1_vy_right = l2_y_right / det_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_g2_vx_right = l1_x_right / det_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
@@ -5259,8 +5233,8 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let bias_rate_dot_1_right = (bias_a_on_f1_right
+            + rate_1_squared_right * t2_right) / det_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
@@ -5273,10 +5247,10 @@ impl FiveBar {
         let force_on_u1_right = minus_tau_2_right
             + base_parameters[2] * bias_rate_dot_1_right
             + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            + minus_masses_right_1_2 * (k_right * minus_bias_a_on_f2_right)
+            + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
             + tau_1_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+        let minus_bias_rate_dot_2_right = (minus_bias_a_on_f2_right
+            + rate_2_squared_right * t2_right) / det_right;
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);

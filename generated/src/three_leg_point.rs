@@ -21,10 +21,10 @@
 /// | `legs_platform_jacobian_from_joints` | 0 |  |
 /// | `closure_platform_jacobian_from_joints` | 21, 3 sc |  |
 /// | `closure_actuator_jacobian_from_joints` | 3, 3 sc |  |
-/// | `joint_velocities` | 115, 3 √, 9 gd |  |
-/// | `joint_accelerations` | 175, 3 √, 9 gd |  |
+/// | `joint_velocities` | 93, 3 √, 9 gd |  |
+/// | `joint_accelerations` | 161, 3 √, 9 gd |  |
 /// | `twist_from_actuators` | 105, 3 √, 11 gd |  |
-/// | `acceleration_from_actuators` | 174, 3 √, 11 gd |  |
+/// | `acceleration_from_actuators` | 162, 3 √, 11 gd |  |
 /// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
 /// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
@@ -39,19 +39,19 @@
 /// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 10 gd |  |
-/// | `inverse_dynamics` | 332, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_from_joints` | 290, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 404, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
-/// | `inverse_dynamics_base` | 278, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_base_from_joints` | 237, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 351, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
-/// | `mass_matrix` | 195, 3 √, 9 gd |  |
-/// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
-/// | `bias` | 261, 3 √, 6 sg, 9 gd |  |
-/// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
-/// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
-/// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics` | 294, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_from_joints` | 258, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_from_actuators` | 367, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base` | 268, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 233, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `mass_matrix` | 193, 3 √, 9 gd |  |
+/// | `mass_matrix_base` | 166, 3 √, 9 gd |  |
+/// | `bias` | 230, 3 √, 6 sg, 9 gd |  |
+/// | `bias_base` | 210, 3 √, 6 sg, 9 gd |  |
+/// | `forward_dynamics` | 372, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 305, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_preloaded` | 317, 4 √, 6 sg, 11 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
 ///
@@ -71,6 +71,7 @@
 /// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
 /// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
 /// | `k_leg1` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
+/// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
 /// | `fk1_x_leg3` | f_i/k | that force without the factor k, in the leg's axes |
 /// | `rate_2_leg1` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
@@ -81,9 +82,9 @@
 /// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
 /// | `qdd_2_leg1` | q̈_i | acceleration of a joint, eq. (10) |
 /// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `bias_a_on_f1_leg3` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
-/// | `a2_y_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
+/// | `atip_x_leg2` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
@@ -834,7 +835,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 115 operations (43 additions, 66 multiplications, 6 divisions), 3 square roots, 9 guards, 1 negation, 112 intermediates.
+    /// 93 operations (39 additions, 48 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -845,8 +846,6 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         /// radius
@@ -858,20 +857,16 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
+        let rate_1_leg1 = k_leg1 * (l2_x_leg1 * twist[1] - l2_y_leg1 * twist[0]);
+        let minus_rate_2_leg1 = k_leg1
+            * (l1_x_leg1 * twist[1] + minus_l1_y_leg1 * twist[0]);
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
@@ -886,26 +881,21 @@ impl ThreeLegPoint {
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let k_leg2 = 1.0 / det_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let t2_leg2 = 0.8660254037844386 * twist[0];
+        let half_vy = 0.5 * twist[1];
+        let t3_leg2 = t2_leg2 + half_vy;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let half_vx = 0.5 * twist[0];
+        let t4_leg2 = 0.8660254037844386 * twist[1];
+        let t5_leg2 = half_vx - t4_leg2;
+        let rate_1_leg2 = k_leg2 * (minus_l2_x_leg2 * t3_leg2 + l2_y_leg2 * t5_leg2);
+        let rate_2_leg2 = k_leg2 * (l1_x_leg2 * t3_leg2 - l1_y_leg2 * t5_leg2);
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
@@ -914,28 +904,20 @@ impl ThreeLegPoint {
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let k_leg3 = 1.0 / det_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let t2_leg3 = t2_leg2 - half_vy;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let t3_leg3 = half_vx + t4_leg2;
+        let rate_1_leg3 = k_leg3 * (l2_x_leg3 * t2_leg3 + l2_y_leg3 * t3_leg3);
+        let minus_rate_2_leg3 = k_leg3 * (l1_x_leg3 * t2_leg3 + l1_y_leg3 * t3_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         ::core::result::Result::Ok([
-            rate_1_leg1, -minus_qd_2_leg1, rate_1_leg2, qd_2_leg2, rate_1_leg3, qd_2_leg3,
+            rate_1_leg1, -minus_qd_2_leg1, rate_1_leg2, qd_2_leg2, rate_1_leg3, -minus_qd_2_leg3,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -947,7 +929,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 175 operations (64 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 172 intermediates.
+    /// 161 operations (64 additions, 91 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 158 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -961,8 +943,6 @@ impl ThreeLegPoint {
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         /// radius
@@ -979,29 +959,24 @@ impl ThreeLegPoint {
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_rate_2_leg1 = k_leg1
+            * (l1_x_leg1 * twist[1] + minus_l1_y_leg1 * twist[0]);
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let a_on_f1_leg1 = l2_x_leg1 * acceleration[1] - l2_y_leg1 * acceleration[0]
+            + L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = k_leg1 * (l2_x_leg1 * twist[1] - l2_y_leg1 * twist[0]);
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let minus_a_on_f2_leg1 = l1_x_leg1 * acceleration[1]
+            + minus_l1_y_leg1 * acceleration[0] + L_1_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let qdd_2_leg1 = minus_rate_dot_1_leg1 - minus_rate_dot_2_leg1;
+            * (minus_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_qdd_2_leg1 = rate_dot_1_leg1 + minus_rate_dot_2_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -1017,37 +992,35 @@ impl ThreeLegPoint {
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let k_leg2 = 1.0 / det_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let t2_leg2 = 0.8660254037844386 * acceleration[0];
+        let half_dvy = 0.5 * acceleration[1];
+        let t3_leg2 = t2_leg2 + half_dvy;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let half_dvx = 0.5 * acceleration[0];
+        let t4_leg2 = 0.8660254037844386 * acceleration[1];
+        let t5_leg2 = half_dvx - t4_leg2;
+        let t6_leg2 = 0.8660254037844386 * twist[0];
+        let half_vy = 0.5 * twist[1];
+        let t7_leg2 = t6_leg2 + half_vy;
+        let half_vx = 0.5 * twist[0];
+        let t8_leg2 = 0.8660254037844386 * twist[1];
+        let t9_leg2 = half_vx - t8_leg2;
+        let rate_2_leg2 = k_leg2 * (l1_x_leg2 * t7_leg2 - l1_y_leg2 * t9_leg2);
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let a_on_f1_leg2 = minus_l2_x_leg2 * t3_leg2 + l2_y_leg2 * t5_leg2
+            + L_1_SQUARED * rate_2_squared_leg2;
+        let rate_1_leg2 = k_leg2 * (minus_l2_x_leg2 * t7_leg2 + l2_y_leg2 * t9_leg2);
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let qdd_2_leg2 = minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2;
+        let t10_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg2 = k_leg2 * (a_on_f1_leg2 + rate_1_squared_leg2 * t10_leg2);
+        let a_on_f2_leg2 = l1_x_leg2 * t3_leg2 - l1_y_leg2 * t5_leg2
+            - L_1_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k_leg2 * (a_on_f2_leg2 - rate_2_squared_leg2 * t10_leg2);
+        let qdd_2_leg2 = rate_dot_2_leg2 - rate_dot_1_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -1057,39 +1030,31 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
+        let k_leg3 = 1.0 / det_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let t2_leg3 = t2_leg2 - half_dvy;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let t3_leg3 = half_dvx + t4_leg2;
+        let t4_leg3 = t6_leg2 - half_vy;
+        let t5_leg3 = half_vx + t8_leg2;
+        let minus_rate_2_leg3 = k_leg3 * (l1_x_leg3 * t4_leg3 + l1_y_leg3 * t5_leg3);
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let a_on_f1_leg3 = l2_x_leg3 * t2_leg3 + l2_y_leg3 * t3_leg3
+            + L_1_SQUARED * rate_2_squared_leg3;
+        let rate_1_leg3 = k_leg3 * (l2_x_leg3 * t4_leg3 + l2_y_leg3 * t5_leg3);
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let qdd_2_leg3 = rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t6_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_leg3 * t6_leg3);
+        let minus_a_on_f2_leg3 = l1_x_leg3 * t2_leg3 + l1_y_leg3 * t3_leg3
+            + L_1_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * t6_leg3);
+        let minus_qdd_2_leg3 = rate_dot_1_leg3 + minus_rate_dot_2_leg3;
         ::core::result::Result::Ok([
-            -minus_rate_dot_1_leg1, qdd_2_leg1, -minus_rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
-            qdd_2_leg3,
+            rate_dot_1_leg1, -minus_qdd_2_leg1, rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
+            -minus_qdd_2_leg3,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -1210,7 +1175,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 174 operations (62 additions, 104 multiplications, 8 divisions), 3 square roots, 11 guards, 175 intermediates.
+    /// 162 operations (57 additions, 97 multiplications, 8 divisions), 3 square roots, 11 guards, 163 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1227,6 +1192,8 @@ impl ThreeLegPoint {
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -1242,35 +1209,33 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let inv_det_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * inv_det_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+        let t2_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let k1_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = t2_leg2 * k1_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -1278,15 +1243,13 @@ impl ThreeLegPoint {
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let t2_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let k1_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = t2_leg3 * k1_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -1296,63 +1259,50 @@ impl ThreeLegPoint {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+        let t3_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let minus_fk2_x_leg2 = k1_leg2 * v2_by_1_y_leg2;
+        let t4_leg2 = t2_leg2 * twist[0] - t3_leg2 * twist[1];
+        let t5_leg2 = minus_fk2_x_leg2 * t4_leg2;
+        let t6_leg2 = t3_leg2 * twist[0] + t2_leg2 * twist[1] - t5_leg2;
+        let bias_a_on_f1_leg2 = INV_L_1 * (t6_leg2 * t6_leg2);
+        let rate_1_leg2 = k1_leg2 * t4_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 + t5_leg2 * rate_1_leg2);
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let k1_leg1 = L_1 * inv_det_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1
-                + rate_1_squared_leg1 * (0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED)));
+        let c12_leg1 = INV_L_1 * l2_x_leg1;
+        let s12_leg1 = INV_L_1 * l2_y_leg1;
+        let rate_1_leg1 = k1_leg1 * (c12_leg1 * twist[1] - s12_leg1 * twist[0]);
+        let v2_by_1_y_rate_1_leg1 = v2_by_1_y_leg1 * rate_1_leg1;
+        let t1_leg1 = v2_by_1_y_rate_1_leg1 + c12_leg1 * twist[0] + s12_leg1 * twist[1];
+        let bias_a_on_f1_leg1 = INV_L_1 * (t1_leg1 * t1_leg1);
+        let bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 + v2_by_1_y_rate_1_leg1 * rate_1_leg1);
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t3_leg3 = 2.0833333333333335 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let rate_1_leg3 = k1_leg3 * (t2_leg3 * twist[0] - t3_leg3 * twist[1]);
+        let v2_by_1_y_rate_1_leg3 = v2_by_1_y_leg3 * rate_1_leg3;
+        let t4_leg3 = t3_leg3 * twist[0] + t2_leg3 * twist[1] - v2_by_1_y_rate_1_leg3;
+        let bias_a_on_f1_leg3 = INV_L_1 * (t4_leg3 * t4_leg3);
+        let bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 + v2_by_1_y_rate_1_leg3 * rate_1_leg3);
         let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
             - bias_rate_dot_1_leg3;
         let t1 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let g1_vy_leg1 = l2_x_leg1 * inv_det_leg1;
+        let minus_g1_vy_leg2 = t3_leg2 * k1_leg2;
+        let minus_g1_vy_leg3 = t3_leg3 * k1_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
@@ -4175,7 +4125,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 332 operations (131 additions, 193 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 333 intermediates.
+    /// 294 operations (120 additions, 165 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 296 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4216,7 +4166,8 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let half_x = 0.5 * pose[0];
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -4224,46 +4175,35 @@ impl ThreeLegPoint {
         let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
             - L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+            - minus_rate_dot_1_leg1
+                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1))
+            + tau_1_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_a2_x_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            + minus_tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
         let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -4275,20 +4215,14 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
-        let t3_leg2 = y_plus_half_radius * INV_L_1;
-        let fk2_y_leg2 = fk1_y_leg2 + t3_leg2;
+        let t1_leg3 = y_plus_half_radius * INV_L_1;
+        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
             - minus_fk1_x_leg2 * acceleration[0];
         let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
@@ -4297,95 +4231,93 @@ impl ThreeLegPoint {
             + minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
         let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
-            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
             + L_1 * rate_1_squared_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2
-            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
         let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
         let tau_1_leg2 = parameters[12] * rate_1_leg2
             - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
-        let force2_y_leg2 = parameters[18] * a2_y_leg2
-            - (parameters[16] * minus_rate_dot_2_leg2
-                + parameters[17] * rate_2_squared_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+            - minus_rate_dot_1_leg2
+                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2))
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let d_y_leg3 = pose[0] - d_y_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let fk1_y_leg3 = fk2_y_leg3 + t3_leg2;
-        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0] + fk1_y_leg3 * acceleration[1];
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
         let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
+            * (parameters[25] - L_1 * parameters[26]) + parameters[27] * a_on_f1_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
-            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
         let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
-            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
-        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
-            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3))
+            + minus_a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            + g2_vy_leg3 * force_on_u2_leg3 + g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * parameters[30];
-        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
+        let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+            + inv_l_1_mx_2_leg2;
+        let force_y_platform = acceleration[1] * t1_platform;
+        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * parameters[30];
-        let t3 = t2 + force_x_platform;
+        let force_x_platform = acceleration[0] * t1_platform;
+        let t2_platform = t4_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * g1_vy_leg3;
+            + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -4393,21 +4325,20 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3;
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
-        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        let t1 = (t3_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
+        let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
-            g1_vx_leg3 * t5 + g1_vy_leg3 * t4,
+            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4421,7 +4352,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 290 operations (107 additions, 177 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 299 intermediates.
+    /// 258 operations (101 additions, 151 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 267 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4463,34 +4394,29 @@ impl ThreeLegPoint {
         let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
         let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
             + l_1_rate_1_squared_leg1;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
         let g2_vx_leg1 = s1_leg1 * k_leg1;
         let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
         let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let v2_by_1_y_leg1 = L_1 * c2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1;
-        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
-            + parameters[7] * rate_2_squared_leg1;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
         let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            * (a_on_f1_leg1 - l_1_rate_1_squared_leg1 * c2_leg1);
+        let l_1_mx_2_leg1 = L_1 * parameters[6];
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
         let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
         let tau_2_leg1 = ::overact::math::signed(parameters[9], qd_2_leg1);
-        let force_on_u1_leg1 = L_1
-            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            - minus_rate_dot_1_leg1 * (parameters[0] + L_1_SQUARED * parameters[8])
+        let force_on_u1_leg1 = parameters[7] * a_on_f2_leg1
+            - minus_rate_dot_1_leg1
+                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1)
             + tau_1_leg1 - tau_2_leg1;
-        let a2_y_leg1 = s2_leg1 * l_1_rate_1_squared_leg1
-            - v2_by_1_y_leg1 * minus_rate_dot_1_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1 + parameters[7] * a_on_f1_leg1
-            - parameters[5] * minus_rate_dot_2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + c2_leg1 * l_1_rate_2_squared_leg1);
+        let moment2_z_leg1 = parameters[7] * a_on_f1_leg1
+            - minus_rate_dot_2_leg1 * (parameters[5] - l_1_mx_2_leg1);
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
         // --- leg2
         let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -4498,44 +4424,39 @@ impl ThreeLegPoint {
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
-        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
             - minus_fk1_x_leg2 * acceleration[0];
         let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let a2_y_leg2 = s2_leg2 * l_1_rate_1_squared_leg2
-            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
         let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
             - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2 + parameters[17] * a_on_f1_leg2
-            - parameters[15] * minus_rate_dot_2_leg2;
+            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
+        let l_1_mx_2_leg2 = L_1 * parameters[16];
+        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+            - minus_rate_dot_2_leg2 * (parameters[15] - l_1_mx_2_leg2);
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2;
-        let minus_force2_y_leg2 = parameters[16] * minus_rate_dot_2_leg2
-            + parameters[17] * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
         let tau_1_leg2 = parameters[12] * rate_1_leg2
             - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let force_on_u1_leg2 = L_1
-            * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-            - minus_rate_dot_1_leg2 * (parameters[10] + L_1_SQUARED * parameters[18])
+        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+            - minus_rate_dot_1_leg2
+                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2)
             + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -4556,40 +4477,36 @@ impl ThreeLegPoint {
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
         let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
+        let l_1_mx_2_leg3 = L_1 * parameters[26];
         let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
             - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a2_y_leg3 = s2_leg3 * l_1_rate_1_squared_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
-            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+        let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - l_1_mx_2_leg3)
+            - parameters[27] * a_on_f1_leg3;
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
-            - parameters[27] * rate_2_squared_leg3;
-        let minus_force2_x_leg3 = parameters[26] * rate_2_squared_leg3
-            + parameters[27] * rate_dot_2_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
         let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28])
-            + L_1 * (c2_leg3 * force2_y_leg3 - s2_leg3 * minus_force2_x_leg3)
-            + tau_1_leg3 - tau_2_leg3;
+            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3)
+            - a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
         let t1_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * parameters[30];
+        let t1_platform = parameters[30]
+            + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+        let force_y_platform = acceleration[1] * t1_platform;
         let t2_leg3 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
             + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * parameters[30];
-        let t1_platform = t2_leg3 + force_x_platform;
+        let force_x_platform = acceleration[0] * t1_platform;
+        let t2_platform = t2_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -4608,8 +4525,8 @@ impl ThreeLegPoint {
             26.146658848631322,
             ::overact::ActuatorGroup::All,
         )?;
-        let t1 = (t1_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
-        let t2 = t1_platform / s_1_1 + minus_l_2_1 * t1;
+        let t1 = (t1_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
+        let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
             g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
@@ -4626,7 +4543,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 404 operations (164 additions, 229 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 1 negation, 406 intermediates.
+    /// 367 operations (153 additions, 202 multiplications, 12 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 370 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -4671,12 +4588,12 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let half_x = 0.5 * pose[0];
+        let t1_leg3 = pose[1] * 0.8660254037844386;
         // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let d_y_leg2 = half_x - t1_leg3;
         let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -4693,33 +4610,34 @@ impl ThreeLegPoint {
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let d_y_leg3 = half_x + t1_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let t3_leg2 = y_plus_half_radius * INV_L_1;
-        let fk1_y_leg3 = fk2_y_leg3 + t3_leg2;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
-        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * g1_vy_leg3;
+            + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -4727,26 +4645,32 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let vy = (g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            + g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
+        let vy = inv_pivot_2
+            * (g1_vy_leg1 * actuator_velocities[0]
+                - minus_g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+        // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let t3_leg3 = y_plus_half_radius * INV_L_1;
         // --- leg2
-        let fk2_y_leg2 = fk1_y_leg2 + t3_leg2;
+        let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
         let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
         let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
@@ -4762,26 +4686,23 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx + g1_vy_leg3 * vy;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4792,109 +4713,89 @@ impl ThreeLegPoint {
         let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2) / pivot_2;
-        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+        let dvy = inv_pivot_2
+            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+        // --- leg1
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
         let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
         let tau_1_leg1 = rate_1_leg1 * parameters[2]
             - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
-        // --- leg1
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+            - minus_rate_dot_1_leg1
+                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1))
+            + tau_1_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - rate_2_squared_leg1 * parameters[6] - parameters[8] * minus_a2_x_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + rate_2_squared_leg1 * parameters[7]);
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            + minus_tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg2
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
         let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
         let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
-            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2
-            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
         let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
         let tau_1_leg2 = rate_1_leg2 * parameters[12]
             - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - rate_2_squared_leg2 * parameters[16] - parameters[18] * a_on_f1_leg2;
-        let force2_y_leg2 = parameters[18] * a2_y_leg2
-            - (parameters[16] * minus_rate_dot_2_leg2
-                + rate_2_squared_leg2 * parameters[17]);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+            - minus_rate_dot_1_leg2
+                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2))
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
-            - minus_bias_a_on_f2_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * dvx + fk1_y_leg3 * dvy;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+            + minus_bias_a_on_f2_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
         let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
+            * (parameters[25] - L_1 * parameters[26]) + parameters[27] * a_on_f1_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
         let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
-            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
         let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + rate_1_leg3 * parameters[22]
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
-            - (rate_2_squared_leg3 * parameters[26] + parameters[27] * rate_dot_2_leg3);
-        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
-            - rate_2_squared_leg3 * parameters[27] + parameters[28] * a2_y_leg3;
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3))
+            + minus_a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            + g2_vy_leg3 * force_on_u2_leg3 + g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = dvy * parameters[30];
-        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
+        let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+            + inv_l_1_mx_2_leg2;
+        let force_y_platform = dvy * t1_platform;
+        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = dvx * parameters[30];
-        let t5 = t4 + force_x_platform;
-        let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
-        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
+        let force_x_platform = dvx * t1_platform;
+        let t2_platform = t5_leg3 + force_x_platform;
+        let t3 = inv_pivot_2 * (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform);
+        let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
-            g1_vx_leg3 * t7 + g1_vy_leg3 * t6,
+            g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
+            g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4907,7 +4808,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 278 operations (109 additions, 161 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 278 intermediates.
+    /// 268 operations (105 additions, 155 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 270 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4948,7 +4849,8 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let half_x = 0.5 * pose[0];
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -4981,53 +4883,51 @@ impl ThreeLegPoint {
         let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
             - base_parameters[13] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let t1_leg3 = y_plus_half_radius * INV_L_1;
+        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
             - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+            + minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
         let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
+            + L_1 * rate_1_squared_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
             - base_parameters[14] * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
@@ -5037,62 +4937,62 @@ impl ThreeLegPoint {
         let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
             - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
             - minus_fk1_y_leg3 * acceleration[1];
         let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
-            - base_parameters[18] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
+            + base_parameters[18] * a_on_f1_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
         let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
-            - a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
-        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+            + minus_a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
         let force_y_platform = acceleration[1] * base_parameters[0];
-        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * base_parameters[0];
-        let t1_platform = t3_leg3 + force_x_platform;
+        let t1_platform = t4_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -5112,7 +5012,7 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let t1 = (t2_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
+        let t1 = (t3_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
         let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
@@ -5130,7 +5030,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 237 operations (86 additions, 146 multiplications, 5 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 246 intermediates.
+    /// 233 operations (86 additions, 141 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 242 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5174,20 +5074,21 @@ impl ThreeLegPoint {
         let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
         let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
         let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
         let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
         let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + L_1 * rate_1_squared_leg1;
+            + l_1_rate_1_squared_leg1;
         let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
         let tau_2_leg1 = ::overact::math::signed(base_parameters[19], qd_2_leg1);
         let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
             + base_parameters[16] * a_on_f2_leg1 - tau_2_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
         let moment2_z_leg1 = base_parameters[16] * a_on_f1_leg1
             - base_parameters[13] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
@@ -5205,16 +5106,17 @@ impl ThreeLegPoint {
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
         let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
         let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
             - base_parameters[14] * minus_rate_dot_2_leg2;
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
@@ -5224,7 +5126,7 @@ impl ThreeLegPoint {
             + ::overact::math::signed(base_parameters[8], rate_1_leg2)
             + base_parameters[11];
         let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
         let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
         let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
             + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
@@ -5241,24 +5143,25 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
         let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
         let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
         let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
             - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
         let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
             - base_parameters[18] * a_on_f1_leg3;
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
         let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
         let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
@@ -5283,8 +5186,7 @@ impl ThreeLegPoint {
             26.146658848631333,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -5294,7 +5196,7 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
-        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        let t5 = t3 / s_1_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
             g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
@@ -5311,7 +5213,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 351 operations (142 additions, 200 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 352 intermediates.
+    /// 340 operations (138 additions, 191 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 343 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -5356,23 +5258,21 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let half_x = 0.5 * pose[0];
+        let t1_leg3 = pose[1] * 0.8660254037844386;
         // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let d_y_leg2 = half_x - t1_leg3;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -5380,25 +5280,23 @@ impl ThreeLegPoint {
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let d_y_leg3 = half_x + t1_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -5417,39 +5315,33 @@ impl ThreeLegPoint {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let vy = inv_pivot_2
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+        let vy = (g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
         let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-        // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
+        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let t3_leg3 = y_plus_half_radius * INV_L_1;
         // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -5460,6 +5352,9 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
@@ -5469,13 +5364,12 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
@@ -5488,79 +5382,84 @@ impl ThreeLegPoint {
         let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = inv_pivot_2
-            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
+            / pivot_2;
         let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-        // --- leg1
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
         let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
         let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
-            - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
+        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let inv_l_1_my_2_leg1 = INV_L_1 * base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + a_on_f2_leg1 * inv_l_1_my_2_leg1 + minus_tau_2_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+        let moment2_z_leg1 = a_on_f1_leg1 * inv_l_1_my_2_leg1
             - base_parameters[13] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg2
         let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
         let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
             - base_parameters[14] * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
         let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
             + ::overact::math::signed(base_parameters[8], rate_1_leg2)
             + base_parameters[11];
-        let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
-            - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
         // --- leg3
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
-            - minus_bias_a_on_f2_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+            + minus_bias_a_on_f2_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
         let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
-            - base_parameters[18] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
+            + base_parameters[18] * a_on_f1_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
         let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
         let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
-            - a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
-        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + minus_a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
         let force_y_platform = dvy * base_parameters[0];
-        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = dvx * base_parameters[0];
-        let t1_platform = t3_leg3 + force_x_platform;
-        let t3 = inv_pivot_2 * (t2_leg3 + force_y_platform + minus_l_2_1 * t1_platform);
-        let t4 = inv_pivot_1 * t1_platform + minus_l_2_1 * t3;
+        let t5 = t4 + force_x_platform;
+        let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
+        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
-            g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
+            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
+            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -5571,7 +5470,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
+    /// 193 operations (76 additions, 111 multiplications, 6 divisions), 3 square roots, 9 guards, 193 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5593,13 +5492,14 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg1
+        let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -5612,12 +5512,10 @@ impl ThreeLegPoint {
         let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
         let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -5652,7 +5550,7 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg2
                 * (g1_vx_leg2 * masses_leg2_1_2 - minus_g2_vx_leg2 * parameters[15]);
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -5676,7 +5574,7 @@ impl ThreeLegPoint {
         let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let force1_y_by_2_leg3 = c2_leg3 * parameters[26] - s2_leg3 * parameters[27];
         let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
-        let t2_leg3 = t2_leg2
+        let t1_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
             - minus_g2_vx_leg3
@@ -5700,19 +5598,18 @@ impl ThreeLegPoint {
         // --- leg3
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = minus_fk2_y_leg2 + fk1_y_leg2 - fk2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
-        let t4_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
-        let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
+        let t2_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
+        let t3_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
+        let t4_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
             - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
-            + g1_vx_leg3 * t3_leg3 - minus_g2_vx_leg3 * t4_leg3;
-        let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t4_leg3
-            - minus_g1_vy_leg3 * t3_leg3;
+            + g1_vx_leg3 * t2_leg3 - minus_g2_vx_leg3 * t3_leg3;
+        let t5_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t3_leg3
+            - minus_g1_vy_leg3 * t2_leg3;
         ::core::result::Result::Ok([
-            [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
+            [t1_leg3 + parameters[30], t4_leg3], [t4_leg3, t5_leg3 + parameters[30]],
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -5723,7 +5620,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
+    /// 166 operations (64 additions, 96 multiplications, 6 divisions), 3 square roots, 9 guards, 166 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5745,13 +5642,14 @@ impl ThreeLegPoint {
         /// radius
         const RADIUS: ::core::primitive::f64 = 0.35;
         // --- leg1
+        let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -5761,12 +5659,10 @@ impl ThreeLegPoint {
         let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
         let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -5786,9 +5682,6 @@ impl ThreeLegPoint {
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
-        let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
         let t2_leg2 = minus_g2_vx_leg1
             * (minus_g2_vx_leg1 * base_parameters[13]
                 - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
@@ -5796,13 +5689,12 @@ impl ThreeLegPoint {
                 * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2]
-                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
             + minus_g2_vx_leg2
-                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                * (minus_fk1_x_leg2 * base_parameters[17]
                     + minus_g2_vx_leg2 * base_parameters[14]);
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -5820,15 +5712,12 @@ impl ThreeLegPoint {
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
-        let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
-        let t2_leg3 = t2_leg2
+        let t1_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
-                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+                    + minus_fk2_x_leg3 * base_parameters[18])
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                * (fk1_x_leg3 * base_parameters[18]
                     + minus_g2_vx_leg3 * base_parameters[15]);
         // --- leg1
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -5845,29 +5734,29 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
         let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
-            + g2_vy_leg2 * minus_masses_leg2_1_2;
-        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
+            + base_parameters[17] * minus_fk2_y_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let t4_leg2 = base_parameters[17] * fk1_y_leg2
             + g2_vy_leg2 * base_parameters[14];
         // --- leg3
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let fk2_y_leg3 = fk1_y_leg2 + minus_fk2_y_leg2 - minus_fk1_y_leg3;
+        let t2_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            + base_parameters[18] * fk2_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+        let t3_leg3 = base_parameters[18] * minus_fk1_y_leg3
             + g2_vy_leg3 * base_parameters[15];
-        let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
+        let t4_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
             - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
-            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
-        let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
+            - (g1_vx_leg3 * t2_leg3 + minus_g2_vx_leg3 * t3_leg3);
+        let t5_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
             + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
-            + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
+            + minus_g1_vy_leg3 * t2_leg3 + g2_vy_leg3 * t3_leg3;
         ::core::result::Result::Ok([
-            [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
+            [t1_leg3 + base_parameters[0], t4_leg3], [t4_leg3, t5_leg3 + base_parameters[0]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -5879,7 +5768,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 261 operations (101 additions, 154 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 262 intermediates.
+    /// 230 operations (93 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 232 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5890,210 +5779,6 @@ impl ThreeLegPoint {
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("parameters", parameters)],
-        )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + bias_a_on_f2_leg2 * c2_leg2);
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + minus_bias_a_on_f1_leg2 * c2_leg2);
-        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2;
-        let t2_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
-        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let minus_force2_y_leg2 = t2_leg2 + my_2_leg2_rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2
-            * (parameters[10] + L_1_SQUARED * parameters[18])
-            + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-            + tau_1_leg2 - tau_2_leg2;
-        let moment2_z_leg2 = L_1 * (t2_leg2 - my_2_leg2_rate_2_squared_leg2)
-            - parameters[15] * minus_bias_rate_dot_2_leg2;
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1;
-        let c2_leg1 = 8.680555555555555 * t1_leg1;
-        let t3_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
-        let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let minus_force2_y_leg1 = t3_leg1 + my_2_leg1_rate_2_squared_leg1;
-        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1
-            + bias_rate_dot_1_leg1 * (parameters[0] + L_1_SQUARED * parameters[8])
-            + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + tau_1_leg1;
-        let moment2_z_leg1 = L_1 * (t3_leg1 - my_2_leg1_rate_2_squared_leg1)
-            - parameters[5] * minus_bias_rate_dot_2_leg1;
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
-        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
-            - parameters[26] * rate_2_squared_leg3;
-        let t2_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
-        let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t2_leg3 + my_2_leg3_rate_2_squared_leg3;
-        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = bias_rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28])
-            + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + tau_1_leg3 - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * (t2_leg3 - my_2_leg3_rate_2_squared_leg3)
-            - parameters[25] * minus_bias_rate_dot_2_leg3;
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        ::core::result::Result::Ok([t3_leg3, t4_leg3])
-    }
-    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
-    ///
-    /// From the platform's pose and motion.
-    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
-    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
-    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
-    ///
-    /// Output: 2.
-    ///
-    /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
-    ///
-    /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
-    pub fn bias_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -6131,39 +5816,33 @@ impl ThreeLegPoint {
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
-        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + L_1 * minus_force2_y_leg1;
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let l_1_mx_2_leg1 = L_1 * parameters[6];
+        let l_1_my_2_leg1 = L_1 * parameters[7];
+        let minus_moment2_z_leg1 = minus_bias_rate_dot_2_leg1
+            * (parameters[5] - l_1_mx_2_leg1) + rate_2_squared_leg1 * l_1_my_2_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
         let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
-            + minus_tau_2_leg1;
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let force_on_u1_leg1 = minus_tau_2_leg1
+            + bias_rate_dot_1_leg1
+                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1)
+            + rate_1_squared_leg1 * l_1_my_2_leg1 + tau_1_leg1;
+        // --- leg2
+        let t1_leg2 = pose[0] + 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let t1_leg3 = pose[0] - 0.3031088913245535;
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
@@ -6183,15 +5862,204 @@ impl ThreeLegPoint {
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let t3_leg2 = INV_L_1 * y_plus_half_radius;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let l_1_mx_2_leg2 = L_1 * parameters[16];
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
+            + parameters[12] * rate_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2
+            * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2)
+            + parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment2_z_leg2 = minus_bias_rate_dot_2_leg2
+            * (parameters[15] - l_1_mx_2_leg2)
+            + minus_bias_a_on_f1_leg2 * parameters[17];
+        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = INV_L_1 * t1_leg3 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let l_1_mx_2_leg3 = L_1 * parameters[26];
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
+            + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
+        let force_on_u1_leg3 = bias_rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3)
+            + parameters[27] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_bias_rate_dot_2_leg3 = k_leg3
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_moment2_z_leg3 = minus_bias_rate_dot_2_leg3
+            * (parameters[25] - l_1_mx_2_leg3) + bias_a_on_f1_leg3 * parameters[27];
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+            - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1
+            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+            + g1_vy_leg2 * force_on_u1_leg2
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
+        ::core::result::Result::Ok([t2_leg3, t3_leg3])
+    }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 210 operations (83 additions, 121 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 211 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn bias_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let half_x = 0.5 * pose[0];
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
+            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + minus_tau_2_leg1;
+        // --- leg2
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let t1_leg3 = INV_L_1 * y_plus_half_radius;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg2 = k_leg2
@@ -6211,7 +6079,8 @@ impl ThreeLegPoint {
             + minus_bias_a_on_f1_leg2 * base_parameters[17];
         let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -6228,16 +6097,14 @@ impl ThreeLegPoint {
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
+        let minus_fk2_x_leg3 = INV_L_1 * t2_leg3 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let fk1_y_leg3 = fk2_y_leg3 + t1_leg3;
+        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg3 = k_leg3
@@ -6262,8 +6129,8 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t2 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
-            - minus_g1_vy_leg3 * force_on_u1_leg3;
+            + g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+            + g1_vy_leg3 * force_on_u1_leg3;
         ::core::result::Result::Ok([t1, t2])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -6276,7 +6143,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 374 operations (145 additions, 220 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 375 intermediates.
+    /// 372 operations (146 additions, 217 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 373 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6304,13 +6171,11 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg2
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let half_x = 0.5 * pose[0];
+        let d_y_leg2 = half_x - 0.8660254037844386 * pose[1];
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -6330,7 +6195,7 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -6340,7 +6205,8 @@ impl ThreeLegPoint {
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
+        let d_y_leg3 = pose[0] - d_y_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -6369,18 +6235,17 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
+        let c2_leg2 = 8.680555555555555 * t2_leg2;
         let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            * (minus_bias_a_on_f1_leg2 + bias_a_on_f2_leg2 * c2_leg2);
         let t3_leg2 = parameters[10] + L_1_SQUARED * parameters[18];
         let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            * (bias_a_on_f2_leg2 + minus_bias_a_on_f1_leg2 * c2_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
             - parameters[16] * rate_2_squared_leg2;
-        let c2_leg2 = 8.680555555555555 * t2_leg2;
         let t4_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
         let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
         let minus_force2_y_leg2 = t4_leg2 + my_2_leg2_rate_2_squared_leg2;
@@ -6433,7 +6298,9 @@ impl ThreeLegPoint {
             - parameters[5] * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let fk2_y_leg3 = minus_fk2_y_leg2 + fk1_y_leg2 - minus_fk1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
@@ -6441,41 +6308,40 @@ impl ThreeLegPoint {
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
-        let c2_leg3 = 8.680555555555555 * t2_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * t1_leg3;
         let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
-        let t3_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let t2_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
         let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
             - parameters[26] * rate_2_squared_leg3;
-        let t4_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let c2_leg3 = 8.680555555555555 * t1_leg3;
+        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t4_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
         let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t3_leg3
+        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t2_leg3
             + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
             + tau_1_leg3 - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * (t4_leg3 - my_2_leg3_rate_2_squared_leg3)
+        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
             - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t5_leg3;
+            + g1_vx_leg3 * torques[2] - t4_leg3;
         let masses_leg2_1_1 = t3_leg2 + parameters[11];
         let minus_masses_leg2_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg2 * parameters[17])
@@ -6495,18 +6361,18 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg1
                     * (minus_g1_vx_leg1 * minus_masses_leg1_1_2
                         - minus_g2_vx_leg1 * parameters[5]));
-        let masses_leg3_1_1 = t3_leg3 + parameters[21];
+        let masses_leg3_1_1 = t2_leg3 + parameters[21];
         let minus_masses_leg3_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg3 * parameters[27])
-                - 85.15625 * (t2_leg3 * parameters[26]));
-        let t6_leg3 = t5_leg2
+                - 85.15625 * (t1_leg3 * parameters[26]));
+        let t5_leg3 = t5_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
                 * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * parameters[25]);
-        let mass_1_1 = t6_leg3 + parameters[30];
+        let mass_1_1 = t5_leg3 + parameters[30];
         ::overact::guard::mass(mass_1_1)?;
         let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * parameters[5];
@@ -6516,25 +6382,25 @@ impl ThreeLegPoint {
             + g2_vy_leg2 * minus_masses_leg2_1_2;
         let t7_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
             + g2_vy_leg2 * parameters[15];
-        let t7_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
+        let t6_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
             + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t8_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+        let t7_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             + g2_vy_leg3 * parameters[25];
         let mass_1_2 = minus_g2_vx_leg1 * t4_leg1 - minus_g1_vx_leg1 * t5_leg1
             - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
-            - (g1_vx_leg3 * t7_leg3 + minus_g2_vx_leg3 * t8_leg3);
+            - (g1_vx_leg3 * t6_leg3 + minus_g2_vx_leg3 * t7_leg3);
         let l_2_1 = mass_1_2 / mass_1_1;
-        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t8_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t10_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
+        let t9_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
             + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
-            + minus_g1_vy_leg3 * t7_leg3 + g2_vy_leg3 * t8_leg3;
-        let mass_2_2 = t10_leg3 + parameters[30];
+            + minus_g1_vy_leg3 * t6_leg3 + g2_vy_leg3 * t7_leg3;
+        let mass_2_2 = t9_leg3 + parameters[30];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
+            - minus_g1_vy_leg3 * torques[2] - t8_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t2, t2])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -6547,7 +6413,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 306 operations (119 additions, 179 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 308 intermediates.
+    /// 305 operations (121 additions, 176 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 306 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6580,8 +6446,8 @@ impl ThreeLegPoint {
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let half_x = 0.5 * pose[0];
+        let d_y_leg3 = half_x + 0.8660254037844386 * pose[1];
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
@@ -6602,7 +6468,7 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -6612,14 +6478,17 @@ impl ThreeLegPoint {
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -6667,8 +6536,8 @@ impl ThreeLegPoint {
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let t3_leg2 = y_plus_half_radius * INV_L_1;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
+        let t2_leg3 = y_plus_half_radius * INV_L_1;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
         let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -6689,18 +6558,16 @@ impl ThreeLegPoint {
             + minus_bias_a_on_f1_leg2 * base_parameters[17];
         let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
         // --- leg3
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let fk1_y_leg3 = fk2_y_leg3 + t2_leg3;
+        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg3 = k_leg3
@@ -6709,8 +6576,8 @@ impl ThreeLegPoint {
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
         let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
             + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
@@ -6718,63 +6585,60 @@ impl ThreeLegPoint {
         let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
             + bias_a_on_f1_leg3 * base_parameters[18];
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+        let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
             - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
             - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t2_leg3;
-        let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
-        let t4_leg2 = minus_g2_vx_leg1
+            + g1_vx_leg3 * torques[2] - t3_leg3;
+        let t3_leg2 = minus_g2_vx_leg1
             * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
             - minus_g1_vx_leg1
                 * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2]
-                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
             + minus_g2_vx_leg2
-                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                * (minus_fk1_x_leg2 * base_parameters[17]
                     + minus_g2_vx_leg2 * base_parameters[14]);
         let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
-        let t3_leg3 = t4_leg2
+        let t4_leg3 = t3_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
                 * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * base_parameters[15]);
-        let mass_1_1 = t3_leg3 + base_parameters[0];
+        let mass_1_1 = t4_leg3 + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
         let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
             + minus_g2_vy_leg1 * base_parameters[13];
         let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
-        let t5_leg2 = g2_vy_leg2 * minus_masses_leg2_1_2
+        let t4_leg2 = minus_fk2_y_leg2 * base_parameters[17]
             - g1_vy_leg2 * base_parameters[2];
-        let t6_leg2 = g2_vy_leg2 * base_parameters[14]
-            - g1_vy_leg2 * minus_masses_leg2_1_2;
-        let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            - minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
-            - minus_g2_vy_leg3 * base_parameters[15];
+        let t5_leg2 = g2_vy_leg2 * base_parameters[14]
+            - minus_fk1_y_leg2 * base_parameters[17];
+        let t5_leg3 = g2_vy_leg3 * minus_masses_leg3_1_2
+            - g1_vy_leg3 * base_parameters[3];
+        let t6_leg3 = g2_vy_leg3 * base_parameters[15]
+            - g1_vy_leg3 * minus_masses_leg3_1_2;
         let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
-            - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
-            - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
+            - (g1_vx_leg2 * t4_leg2 + minus_g2_vx_leg2 * t5_leg2)
+            - (g1_vx_leg3 * t5_leg3 + minus_g2_vx_leg3 * t6_leg3);
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
+        let t7_leg3 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            + g1_vy_leg2 * force_on_u1_leg2
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t4_leg3
-            - minus_g2_vy_leg3 * t5_leg3;
-        let mass_2_2 = t7_leg3 + base_parameters[0];
+            + g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+            + g1_vy_leg3 * force_on_u1_leg3;
+        let t8_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t5_leg2 - g1_vy_leg2 * t4_leg2 + g2_vy_leg3 * t6_leg3
+            - g1_vy_leg3 * t5_leg3;
+        let mass_2_2 = t8_leg3 + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
+            + g1_vy_leg3 * torques[2] - t7_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -6788,7 +6652,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 343 operations (132 additions, 203 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 344 intermediates.
+    /// 317 operations (124 additions, 185 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 318 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6809,6 +6673,8 @@ impl ThreeLegPoint {
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -6900,44 +6766,37 @@ impl ThreeLegPoint {
         let inv_norm_3 = 1.0 / norm_3;
         let share_1_3_inv_norm_3 = share_1_3 * inv_norm_3;
         // --- leg2
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
         let tau_1_leg2 = parameters[12] * rate_1_leg2
             - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
-        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
-            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
-        let force2_y_leg2 = parameters[18] * a2_y_leg2
-            - (parameters[16] * minus_rate_dot_2_leg2
-                + parameters[17] * rate_2_squared_leg2);
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2
-            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+            - minus_rate_dot_1_leg2
+                * (parameters[10]
+                    + L_1_SQUARED * (parameters[18] - INV_L_1 * parameters[16]))
+            + tau_1_leg2 - tau_2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -6945,39 +6804,35 @@ impl ThreeLegPoint {
         let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
         let t2_leg1 = 0.5 * t1_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1;
+        let c2_leg1 = 8.680555555555555 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[7] * rate_2_squared_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
         let minus_rate_dot_1_leg1 = k_leg1
             * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let t3_leg1 = L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            - minus_rate_dot_1_leg1
+                * (parameters[0]
+                    + L_1_SQUARED * (parameters[8] - INV_L_1 * parameters[6]));
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1 + tau_1_leg1;
         let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_a2_x_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            + minus_tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+        let moment2_z_leg1 = parameters[7] * minus_a2_x_leg1
+            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
         let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
@@ -6995,48 +6850,43 @@ impl ThreeLegPoint {
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
         let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
             - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
-            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
-            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
+        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
-            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[20]
+                + L_1_SQUARED * (parameters[28] - INV_L_1 * parameters[26]))
+            - parameters[27] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - L_1 * parameters[26])
+            - parameters[27] * a_on_f1_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t2_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * parameters[30];
-        let t4 = t3 + force_x_platform;
+        let t1_platform = parameters[30]
+            + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+        let force_x_platform = acceleration[0] * t1_platform;
+        let t2_platform = t2_leg3 + force_x_platform;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let t5 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * parameters[30];
-        let t6 = t5 + force_y_platform;
+        let force_y_platform = acceleration[1] * t1_platform;
+        let t3_platform = t3_leg3 + force_y_platform;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let t7 = t4 * minus_vx_by_a1 + t6 * minus_vy_by_a1;
+        let t3 = t2_platform * minus_vx_by_a1 + t3_platform * minus_vy_by_a1;
         let share_2_3_inv_norm_3 = share_2_3 * inv_norm_3;
         let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
         let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let t8 = t4 * minus_vx_by_a2 + t6 * minus_vy_by_a2;
-        let t9 = preload[0] - (share_1_3_inv_norm_3 * t7 + share_2_3_inv_norm_3 * t8);
+        let t4 = t2_platform * minus_vx_by_a2 + t3_platform * minus_vy_by_a2;
+        let t5 = preload[0] - (share_1_3_inv_norm_3 * t3 + share_2_3_inv_norm_3 * t4);
         ::core::result::Result::Ok([
-            -(share_1_3_inv_norm_3 * t9 + t7), -(share_2_3_inv_norm_3 * t9 + t8), inv_norm_3 * t9,
+            -(share_1_3_inv_norm_3 * t5 + t3), -(share_2_3_inv_norm_3 * t5 + t4), inv_norm_3 * t5,
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.

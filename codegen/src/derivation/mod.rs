@@ -72,7 +72,7 @@ pub(crate) use guard::{Guard, GuardKind};
 pub(crate) use inventory::sources;
 pub use inventory::{function_name, inventory};
 pub use motion_input::MotionInput;
-pub(crate) use orientation::station_choices;
+pub(crate) use orientation::{is_whole, station_choices};
 pub use parameter::BodyParameter;
 pub(crate) use path::seat_choices;
 pub use selection::{Combination, DynamicsBy, Formulation, JointsBy, Selection};

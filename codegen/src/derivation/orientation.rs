@@ -171,6 +171,15 @@ pub(super) fn distinct<'a>(
     own
 }
 
+/// Whether a leg is closed in all three components of a velocity or in none, so that any axes will do.
+pub(crate) fn is_whole(mechanism: &Mechanism, leg: usize) -> bool {
+    let rows = mechanism.closure_rows(leg);
+    [0, 1].iter().all(|&part| {
+        let count = rows.iter().filter(|&&row| row / 3 == part).count();
+        count == 0 || count == 3
+    })
+}
+
 /// Whether a leg's closure is of the same components in all of some axes: it is of all three of a velocity or of
 /// none, or the axes turn about what is left out. The first axes are those of the components.
 pub(super) fn keep_rows<'a>(

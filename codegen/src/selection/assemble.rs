@@ -28,8 +28,10 @@ struct Form {
     /// Whether it is searched however many operations it has: the cheapest one in the formulation that was chosen
     /// for the robot, and one that a short search makes the cheapest.
     is_worth: bool,
-    /// Whether the axes of all legs are the first ones in it, which a short search always looks at.
+    /// Whether the axes of all legs are the first ones in it.
     is_plain: bool,
+    /// Whether a short search looks at it however many operations it has: the axes of some legs are the first ones.
+    is_tried: bool,
 }
 
 impl Assembler<'_> {
@@ -76,6 +78,7 @@ impl Assembler<'_> {
                 selection,
                 is_worth: false,
                 is_plain: false,
+                is_tried: false,
             })
         };
         let mut forms = vec![count(self.selection.clone())?];
@@ -107,9 +110,9 @@ impl Assembler<'_> {
             });
             // A form in which a leg cannot be written is none to choose.
             let Ok(mut trial) = trial else { continue };
-            trial.is_plain = change.is_plain();
+            (trial.is_plain, trial.is_tried) = (change.is_plain(), change.takes_first());
             if let Some(Ok(mut other)) = other.map(count) {
-                other.is_plain = true;
+                (other.is_plain, other.is_tried) = (true, true);
                 trials.push(other);
             }
             if trial.operations < best.operations {
@@ -134,7 +137,7 @@ impl Assembler<'_> {
         best: &Form,
     ) -> Result<Vec<Form>, Underivable> {
         let (plain, others): (Vec<Form>, Vec<Form>) =
-            trials.into_iter().partition(|form| form.is_plain);
+            trials.into_iter().partition(|form| form.is_tried);
         let mut found = formulation::promising(others, best.operations, |form| form.operations);
         found.extend(plain);
         let (formulation, dynamics) = (&best.selection.formulation, best.selection.dynamics);

@@ -2,7 +2,9 @@
 //! a search, and counted.
 
 use super::regressor::Regressor;
-use crate::derivation::{Formulation, Selection, Underivable, seat_choices, station_choices};
+use crate::derivation::{
+    Formulation, Selection, Underivable, is_whole, seat_choices, station_choices,
+};
 use crate::mechanism::{End, Leg, Mechanism};
 use crate::parallel;
 use overact_core::Function;
@@ -44,7 +46,7 @@ pub(super) fn cheapest_formulation(
         regressor,
         formulation: plain,
     };
-    for choice in choices(mechanism) {
+    for choice in choices(mechanism, false) {
         best.choose(&choice);
     }
     Ok((best.formulation, best.regressor))
@@ -117,6 +119,11 @@ impl Change {
         matches!(self, Self::Plain)
     }
 
+    /// Whether it takes the first axes for some legs.
+    pub(super) const fn takes_first(&self) -> bool {
+        matches!(self, Self::Plain | Self::Station(_, 0))
+    }
+
     /// The formulation with the change; `None` where it is written so already.
     pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
         let mut changed = formulation.clone();
@@ -146,8 +153,9 @@ impl Change {
 }
 
 /// The changes among which one is chosen after the other: for each shape of legs the axes of its closure, then
-/// whether axes that meet share a moment.
-pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
+/// whether axes that meet share a moment. Of legs that are closed in some components alone they are tried for one
+/// function, `own`, and not for the robot, for what suits its identification model does not suit the rest.
+fn choices(mechanism: &Mechanism, own: bool) -> Vec<Vec<Change>> {
     let mut shapes = BTreeSet::new();
     if !mechanism.is_tree() {
         let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
@@ -159,10 +167,12 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
         // A number counts if it stands for axes of its own in one of the legs.
         let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
             let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
-            all.collect::<BTreeSet<usize>>()
+            let are_tried = own || legs.iter().all(|&leg| is_whole(mechanism, leg));
+            all.filter(|&number| are_tried || number == 0)
+                .collect::<BTreeSet<usize>>()
         };
         let stations = of_all(station_choices);
-        let own = stations
+        let unseated = stations
             .iter()
             .map(|&station| Change::Station(legs.clone(), station));
         let seated = of_all(seat_choices).into_iter().skip(1).flat_map(|seat| {
@@ -170,7 +180,7 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
             let stations = stations.iter();
             stations.map(move |&station| Change::Seat(legs.clone(), seat, station))
         });
-        own.chain(seated).collect()
+        unseated.chain(seated).collect()
     };
     let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
     if mechanism.is_parasitic() {
@@ -188,7 +198,7 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
     let has_forces = has_forces(function);
     let has_motion = has_forces || function.columns().is_some();
     let mut all = vec![Change::Plain];
-    all.extend(choices(mechanism).into_iter().flatten());
+    all.extend(choices(mechanism, true).into_iter().flatten());
     all.retain(|change| has_motion || !matches!(change, Change::Weighted(_) | Change::OwnAxes(_)));
     if has_forces && mechanism.skeleton().is_some() {
         all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
