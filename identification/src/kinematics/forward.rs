@@ -71,7 +71,7 @@ impl<'a> Forward<'a> {
             self.started = true;
         }
         let together = if self.spacing > 1 {
-            let closed = self.from_closed_form(positions);
+            let closed = self.in_closed_form(positions);
             closed.or_else(|| self.together(positions))
         } else {
             None
@@ -104,7 +104,7 @@ impl<'a> Forward<'a> {
     }
 
     /// All poses from those in closed form; `None` where there are none, or where they jump.
-    fn from_closed_form(&self, positions: &[f64]) -> Option<Vec<f64>> {
+    fn in_closed_form(&self, positions: &[f64]) -> Option<Vec<f64>> {
         let samples = positions.len() / self.log.actuators();
         let function = Function::PoseInClosedForm;
         let poses = evaluate(self.model, function, &[positions], samples).ok()?;

@@ -25,7 +25,7 @@
 //! itself, as a constant column has frequency zero, there is little to divide: there the neighbouring
 //! frequencies speak, as far as they tell more.
 
-use nalgebra::{DMatrix, DMatrixView, Dyn};
+use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
 use super::{
@@ -245,16 +245,7 @@ impl Context<'_> {
 
 /// Mᵀ M, as a product of matrices, which is quicker than one of columns.
 pub(crate) fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let (rows, columns) = matrix.shape();
-    // The same numbers, row by row.
-    let turned = DMatrixView::from_slice_with_strides_generic(
-        matrix.as_slice(),
-        Dyn(columns),
-        Dyn(rows),
-        Dyn(rows),
-        Dyn(1),
-    );
-    turned * matrix
+    matrix.transpose() * matrix
 }
 
 /// The spectra of the residual and the columns of a line.
