@@ -106,10 +106,12 @@ fn iterate<T: Float>(
     for _ in 0..STEPS {
         find(pose, step)?;
         displace(pose, step);
-        let largest = step.iter().fold(T::ZERO, |m, s| m.max(s.abs()));
-        if !largest.is_finite() {
+        // Of a number and none that is one the maximum is the number; their sum is none.
+        let total: T = step.iter().map(|s| s.abs()).sum();
+        if !total.is_finite() {
             break;
         }
+        let largest = step.iter().fold(T::ZERO, |m, s| m.max(s.abs()));
         // The next step is largest²/before at most; a tenth of what is tolerated leaves room for those behind it.
         let tolerated = T::of(T::LIMITS.step);
         if largest < tolerated || largest * largest < T::of(0.1) * tolerated * before {
@@ -357,6 +359,18 @@ mod tests {
         gauss_newton(measured, &mut pose, workspace, evaluate, super::displace).expect("a root");
         assert_eq!(evaluations, 2);
         assert!((pose[0] - 2.0).abs() < 1e-14, "{}", pose[0]);
+    }
+
+    #[test]
+    fn a_step_that_is_no_number_leads_nowhere() {
+        for wrong in [[0.0, f64::NAN], [f64::NAN, 0.0], [f64::INFINITY, 0.0]] {
+            let find = |_: &[f64], step: &mut [f64]| {
+                step.copy_from_slice(&wrong);
+                Ok(())
+            };
+            let found = super::steps(&mut [1.0, 2.0], &mut [0.0; 2], find, super::displace);
+            assert!(!found, "{wrong:?}");
+        }
     }
 
     #[test]

@@ -9,7 +9,8 @@
 //!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
 //!   adjugate over determinant: one division a block.
 //!
-//! A determinant may vanish where J is regular. Whoever takes the steps then goes on by normal equations.
+//! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So d² is
+//! guarded as other determinants are; whoever takes the steps then goes on by normal equations.
 
 use super::elimination::{Rows, adjugate};
 use super::linear::{apply, dot, product};
@@ -72,7 +73,7 @@ impl<'a> Sheet<'a, '_> {
         (rows, right)
     }
 
-    /// The solution of A x = b; the determinants that are divided by are added to those given. `None` where a
+    /// The solution of A x = b; what must not vanish of the determinants that are divided by is added to those given. `None` where a
     /// block is singular at home.
     fn by_blocks(
         &self,
@@ -94,7 +95,7 @@ impl<'a> Sheet<'a, '_> {
         let cofactors = adjugate(&p);
         let column: Vec<Expr<'a>> = cofactors.iter().map(|row| row[0]).collect();
         let determinant = dot(&p[0], &column);
-        determinants.push(determinant);
+        determinants.push(determinant.squared());
         let reciprocal = determinant.reciprocal();
         // R P⁻¹
         let factors: Rows<'a> = product(&r, &cofactors)

@@ -204,7 +204,7 @@ fn check_names(item: &Item<'_, '_>, joints: &[JointShape<'_, '_>]) {
             let message = format!("there are two joints `{}` in this leg", name.value);
             item.context.report(
                 Diagnostic::new(Code::SAME_NAME, message, name.span.clone())
-                    .help("a joint without a name is called by its number"),
+                    .help("a joint without a name is called by its number, and one of several axes has axes `NAME_1` and others"),
             );
         }
     }

@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 const PROMISING: usize = 106;
 
 /// Of so many such forms a short search tells which is the cheapest.
-const TRIED: usize = 6;
+const TRIED: usize = 4;
 
 /// The cheapest formulation of the standard regressor from joint angles, with the regressor: for each shape
 /// of legs the axes of its closure, then whether axes that meet share a moment; the plain form where nothing

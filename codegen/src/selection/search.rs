@@ -84,8 +84,11 @@ impl Search {
         standing: &dyn Fn(InputElement) -> Option<f64>,
     ) -> Result<Program, InternalError> {
         let limits = self.limits_of(function);
-        let again = is_of_control(function).then(|| self.limits.of_control_again());
-        let again = again.flatten();
+        // Of a controller's functions the one that runs in every cycle of it.
+        let again = match function {
+            Function::InverseDynamics(_) => self.limits.of_control_again(),
+            _ => None,
+        };
         let compared = if limits.compares_regular_states {
             &self.states[..]
         } else {

@@ -78,11 +78,39 @@ fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> 
                     false => high = middle,
                 }
             }
-            returns(stem, robot, &at(low))?;
+            for beside in [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
+                steps_or_refuses(stem, robot, &at(low + beside))?;
+                returns(stem, robot, &at(low + beside))?;
+            }
             found += 1;
         }
     }
     assert!(found > 5, "{stem}: {found} poses");
+    Ok(())
+}
+
+/// The step is right or refused, so that forward kinematics goes on by normal equations.
+fn steps_or_refuses(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
+    let (n, r) = (robot.info().sizes.actuators, robot.info().sizes.dof);
+    let (mut actuators, mut rows) = (vec![0.0; n], vec![0.0; n * r]);
+    for (function, output) in [
+        (Function::ActuatorPositions, &mut actuators),
+        (Function::InverseJacobian, &mut rows),
+    ] {
+        let done = robot.evaluate(function, &[pose], output);
+        done.map_err(|error| error.error)?;
+    }
+    let missed = DVector::from_fn(n, |row, _| if row % 2 == 0 { 1e-3 } else { -5e-4 });
+    let measured = DVector::from_vec(actuators) + &missed;
+    let mut step = vec![0.0; r];
+    if robot
+        .evaluate(Function::PoseStep, &[pose, measured.as_slice()], &mut step)
+        .is_ok()
+    {
+        let wanted = DMatrix::from_row_slice(n, r, &rows).pseudo_inverse(1e-12)? * missed;
+        let off = (DVector::from_vec(step) - &wanted).amax() / wanted.amax();
+        assert!(off < 1e-3, "{stem}: off by {off:e} at {pose:?}");
+    }
     Ok(())
 }
 

@@ -5,6 +5,7 @@ static rob_error rob_LOOP(const double *actuators, double *pose)
     for (int count = 0; count < 20; count++) {
         double step[ROB_DOF];
         double largest = 0.0;
+        double total = 0.0;
         const rob_error error = rob_FIND(pose, actuators, step);
         if (error != ROB_OK) {
             return error;
@@ -12,8 +13,9 @@ static rob_error rob_LOOP(const double *actuators, double *pose)
         rob_displace(pose, step);
         for (int row = 0; row < ROB_DOF; row++) {
             largest = (fabs(step[row]) > largest) ? fabs(step[row]) : largest;
+            total += fabs(step[row]);
         }
-        if (!isfinite(largest)) {
+        if (!isfinite(total)) {
             return ROB_NO_CONVERGENCE;
         }
         /* The next step is largest * largest / before at most. */
