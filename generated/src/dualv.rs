@@ -50,11 +50,11 @@
 /// | `inverse_dynamics_base_from_joints` | 442, 9 sc, 12 sg, 7 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd |  |
-/// | `mass_matrix_base` | 294, 4 √, 1 sc, 12 gd |  |
-/// | `bias` | 464, 4 √, 1 sc, 12 sg, 12 gd |  |
-/// | `bias_base` | 376, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
+/// | `bias` | 465, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `forward_dynamics` | 715, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `forward_dynamics_base` | 600, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 14 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
@@ -10137,7 +10137,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 294 operations (119 additions, 161 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 294 intermediates.
+    /// 297 operations (119 additions, 170 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 297 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10162,11 +10162,7 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
-        let d_y_leg3 = pose[1] - t1_leg3;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let t1_leg1 = half_d_y_leg3 + t1_leg3;
-        let d_y_leg1 = t1_leg1 + t1_leg1;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -10193,9 +10189,10 @@ impl DualV {
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let first1_x_leg2 = minus_s2_leg2 * base_parameters[25];
         let masses_leg2_1_2 = L_AB * first1_x_leg2;
@@ -10212,6 +10209,7 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -10222,12 +10220,13 @@ impl DualV {
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let minus_first1_x_leg3 = s2_leg3 * base_parameters[26];
         let minus_masses_leg3_1_2 = L_AB * minus_first1_x_leg3;
-        let t2_leg3 = t1_leg2
+        let t1_leg3 = t1_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[6]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
@@ -10251,42 +10250,44 @@ impl DualV {
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
         let first1_x_leg4 = minus_s2_leg4 * base_parameters[27];
         let masses_leg4_1_2 = L_AB * first1_x_leg4;
-        let t1_leg4 = t2_leg3
+        let t1_leg4 = t1_leg3
             + g2_vx_leg4
                 * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
                 * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
         let mass_platform = base_parameters[3] + base_parameters[52];
         // --- leg1
-        let l1_y_leg1 = t1_leg1 - d_x_leg1 * h_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        let t2_leg1 = g1_vy_leg1 * base_parameters[4]
+        let t1_leg1 = g1_vy_leg1 * base_parameters[4]
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t3_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
+        let t2_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
             + minus_g2_vy_leg1 * base_parameters[20];
         // --- leg2
-        let l1_y_leg2 = t1_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
-        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let t2_leg2 = g2_vy_leg2 * base_parameters[21]
             - masses_leg2_1_2 * minus_g1_vy_leg2;
         let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2
             - minus_g1_vy_leg2 * base_parameters[5];
         // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let g1_vy_leg3 = l2_y_leg3 / det_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
-        let t3_leg3 = g1_vy_leg3 * base_parameters[6]
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let t2_leg3 = g1_vy_leg3 * base_parameters[6]
             + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t4_leg3 = minus_masses_leg3_1_2 * g1_vy_leg3
+        let t3_leg3 = minus_masses_leg3_1_2 * g1_vy_leg3
             + minus_g2_vy_leg3 * base_parameters[22];
-        let t5_leg3 = g1_vx_leg1 * t2_leg1 + minus_g2_vx_leg1 * t3_leg1
-            + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t3_leg3
-            + minus_g2_vx_leg3 * t4_leg3;
+        let t4_leg3 = g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1
+            + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t2_leg3
+            + minus_g2_vx_leg3 * t3_leg3;
         // --- leg4
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -10296,7 +10297,7 @@ impl DualV {
             - masses_leg4_1_2 * minus_g1_vy_leg4;
         let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2
             - minus_g1_vy_leg4 * base_parameters[7];
-        let t4_leg4 = t5_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
+        let t4_leg4 = t4_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
@@ -10307,20 +10308,20 @@ impl DualV {
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let t4_leg1 = minus_g1_wz_leg1 * base_parameters[4]
+        let t3_leg1 = minus_g1_wz_leg1 * base_parameters[4]
             + g2_wz_leg1 * minus_masses_leg1_1_2;
-        let t5_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+        let t4_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
             + g2_wz_leg1 * base_parameters[20];
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t6_leg3 = g1_wz_leg3 * base_parameters[6]
+        let t5_leg3 = g1_wz_leg3 * base_parameters[6]
             + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
-        let t7_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+        let t6_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
             + minus_g2_wz_leg3 * base_parameters[22];
-        let t8_leg3 = g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2
-            - (g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1) + g1_vx_leg3 * t6_leg3
-            + minus_g2_vx_leg3 * t7_leg3;
+        let t7_leg3 = g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2
+            - (g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1) + g1_vx_leg3 * t5_leg3
+            + minus_g2_vx_leg3 * t6_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
@@ -10330,31 +10331,31 @@ impl DualV {
             - minus_g1_wz_leg4 * base_parameters[7];
         let first_x_platform = base_parameters[1] + base_parameters[50];
         let first_y_platform = base_parameters[2] + base_parameters[51];
-        let t1_platform = t8_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
+        let t1_platform = t7_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
-        let t9_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t3_leg1
-            + g2_vy_leg2 * t2_leg2 - minus_g1_vy_leg2 * t3_leg2 + g1_vy_leg3 * t3_leg3
-            + minus_g2_vy_leg3 * t4_leg3;
-        let t10_leg3 = g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2
-            - (g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1) + g1_vy_leg3 * t6_leg3
-            + minus_g2_vy_leg3 * t7_leg3;
-        let t2_platform = t10_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
+        let t8_leg3 = g1_vy_leg1 * t1_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t2_leg2 - minus_g1_vy_leg2 * t3_leg2 + g1_vy_leg3 * t2_leg3
+            + minus_g2_vy_leg3 * t3_leg3;
+        let t9_leg3 = g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2
+            - (g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1) + g1_vy_leg3 * t5_leg3
+            + minus_g2_vy_leg3 * t6_leg3;
+        let t2_platform = t9_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
             + c_phi * first_x_platform - s_phi * first_y_platform;
-        let t11_leg3 = minus_g1_wz_leg1 * t4_leg1 + g2_wz_leg1 * t5_leg1
-            + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t6_leg3
-            + minus_g2_wz_leg3 * t7_leg3;
+        let t10_leg3 = minus_g1_wz_leg1 * t3_leg1 + g2_wz_leg1 * t4_leg1
+            + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t5_leg3
+            + minus_g2_wz_leg3 * t6_leg3;
         let inertia_zz_platform = base_parameters[0] + base_parameters[49];
         ::core::result::Result::Ok([
             [t1_leg4 + mass_platform, t4_leg4, t1_platform],
             [
                 t4_leg4,
-                t9_leg3 + g2_vy_leg4 * t2_leg4 - minus_g1_vy_leg4 * t3_leg4
+                t8_leg3 + g2_vy_leg4 * t2_leg4 - minus_g1_vy_leg4 * t3_leg4
                     + mass_platform,
                 t2_platform,
             ],
             [
                 t1_platform, t2_platform,
-                t11_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
+                t10_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
                     + inertia_zz_platform,
             ],
         ])
@@ -10368,7 +10369,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 464 operations (197 additions, 259 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 467 intermediates.
+    /// 465 operations (197 additions, 260 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 468 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10400,8 +10401,7 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
-        let d_y_leg1 = pose[1] + t1_leg3;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -10471,13 +10471,12 @@ impl DualV {
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let half_d_x_leg2 = 0.5 * d_x_leg2;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = half_d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
@@ -10530,26 +10529,25 @@ impl DualV {
             * (parameters[15] + L_AB_SQUARED * parameters[23])
             + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
             + tau_1_leg2 - tau_2_leg2;
-        let x_minus_half_d_x_leg2 = pose[0] - half_d_x_leg2;
         // --- leg3
-        let t2_leg3 = 0.3950502153918333 + x_minus_half_d_x_leg2;
-        let d_x_leg3 = t2_leg3 + t2_leg3;
-        let d_y_leg3 = pose[1] - t1_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
+        let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = t2_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
@@ -10559,8 +10557,8 @@ impl DualV {
         let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
             - l1_x_leg3 * bias_a_end_x_leg1 + l_ab_squared_rate_1_squared_leg3;
-        let t3_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let c2_leg3 = 6.377551020408164 * t3_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
@@ -10590,7 +10588,7 @@ impl DualV {
                 * (parameters[30] + L_AB_SQUARED * parameters[38]) + tau_1_leg3
             - tau_2_leg3;
         let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
-            - 1.7857142857142858 * (t3_leg3 * minus_bias_rate_dot_1_leg3);
+            - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
         let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
         let moment2_z_leg3 = parameters[36] * bias_a2_y_leg3
             + parameters[37] * minus_bias_a2_x_leg3
@@ -10599,22 +10597,22 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
-        let d_x_leg4 = x_minus_half_d_x_leg2 + x_minus_half_d_x_leg2;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = x_minus_half_d_x_leg2 - d_y_leg3 * h_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -10667,7 +10665,7 @@ impl DualV {
         let first_x_platform = parameters[61] + parameters[65];
         let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
-        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
@@ -10678,7 +10676,7 @@ impl DualV {
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -10686,11 +10684,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t4_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t2_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t5_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t6_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -10703,7 +10701,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 376 operations (166 additions, 202 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 379 intermediates.
+    /// 378 operations (166 additions, 204 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 381 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10730,17 +10728,15 @@ impl DualV {
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
-        let half_d_x_leg1 = 0.5 * d_x_leg1;
         let p_y_leg1 = R_P * c_phi;
-        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
-        let d_y_leg1 = pose[1] + t1_leg3;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = half_d_x_leg1 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -10791,13 +10787,12 @@ impl DualV {
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let half_d_x_leg2 = 0.5 * d_x_leg2;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = half_d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
@@ -10839,16 +10834,16 @@ impl DualV {
         let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
             + bias_a_on_f2_leg2 * inv_l_ab_my_2_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let x_minus_half_d_x_leg1 = pose[0] - half_d_x_leg1;
-        let d_x_leg3 = x_minus_half_d_x_leg1 + x_minus_half_d_x_leg1;
-        let d_y_leg3 = pose[1] - t1_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = x_minus_half_d_x_leg1 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -10872,9 +10867,9 @@ impl DualV {
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
             - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
-        let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t1_leg3);
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -10885,25 +10880,24 @@ impl DualV {
         let force_on_u1_leg3 = bias_a_on_f2_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         let moment2_z_leg3 = bias_a_on_f1_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[22] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
-        let x_minus_half_d_x_leg2 = pose[0] - half_d_x_leg2;
-        let d_x_leg4 = x_minus_half_d_x_leg2 + x_minus_half_d_x_leg2;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = x_minus_half_d_x_leg2 - d_y_leg3 * h_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
@@ -10950,7 +10944,7 @@ impl DualV {
         let first_x_platform = base_parameters[1] + base_parameters[50];
         let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
@@ -10961,7 +10955,7 @@ impl DualV {
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -10969,11 +10963,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t2_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -11433,7 +11427,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 600 operations (262 additions, 321 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 603 intermediates.
+    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 612 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11451,6 +11445,8 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -11460,50 +11456,46 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let half_d_x_leg3 = 0.5 * d_x_leg3;
-        let x_minus_half_d_x_leg3 = pose[0] - half_d_x_leg3;
-        let d_x_leg1 = x_minus_half_d_x_leg3 + x_minus_half_d_x_leg3;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
-        let d_y_leg1 = pose[1] + t1_leg3;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
-        let t1_leg2 = 0.3950502153918333 + x_minus_half_d_x_leg3;
-        let d_x_leg2 = t1_leg2 + t1_leg2;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = t1_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
-        let t2_leg3 = half_d_y_leg1 - t1_leg3;
-        let d_y_leg3 = t2_leg3 + t2_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -11525,6 +11517,7 @@ impl DualV {
         // --- leg1
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
@@ -11566,21 +11559,21 @@ impl DualV {
             + base_parameters[48];
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
-        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
         let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
             - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
-        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let t2_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-        let bias_rate_dot_2_leg2 = (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2)
-            / det_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let bias_rate_dot_2_leg2 = k1_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
             - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
         let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
@@ -11594,15 +11587,16 @@ impl DualV {
         let tau_3_leg2 = base_parameters[41] * qd_3_leg2
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let bias_rate_dot_1_leg2 = (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2)
-            / det_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t1_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (base_parameters[9] * minus_rate_1_leg2
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
         let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
             + bias_a_on_f2_leg2 * inv_l_ab_my_2_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let l1_y_leg3 = t2_leg3 - d_x_leg3 * h_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
@@ -11619,9 +11613,9 @@ impl DualV {
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
             - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
-        let t3_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t3_leg3);
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t1_leg3);
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -11632,19 +11626,19 @@ impl DualV {
         let force_on_u1_leg3 = bias_a_on_f2_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t3_leg3);
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         let moment2_z_leg3 = bias_a_on_f1_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[22] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let l1_y_leg4 = t2_leg3 + d_x_leg4 * h_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
@@ -11678,40 +11672,40 @@ impl DualV {
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
         let force_on_u1_leg4 = base_parameters[7] * bias_rate_dot_1_leg4
             + bias_a_on_f2_leg4 * inv_l_ab_my_2_leg4 + tau_1_leg4 - tau_2_leg4;
-        // --- platform
-        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
         let first_y_platform = base_parameters[2] + base_parameters[51];
-        let t1_platform = c_phi * first_x_platform - s_phi * first_y_platform;
-        let rate_3_squared_leg1 = twist[2] * twist[2];
-        let minus_force_x_platform = t1_platform * rate_3_squared_leg1;
+        let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
+            - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
         let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
-            - (t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
-                - minus_g1_vx_leg4 * force_on_u1_leg4 - minus_force_x_platform);
+            - (t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
+                - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
         let minus_masses_leg1_1_2 = det_leg1 * my_2_leg1_inv_l_ab;
         let masses_leg2_1_2 = det_leg2 * inv_l_ab_my_2_leg2;
-        let t3_leg2 = g1_vx_leg1
+        let t2_leg2 = g1_vx_leg1
             * (g1_vx_leg1 * base_parameters[4]
                 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
-                * (l2_x_leg1 * my_2_leg1_inv_l_ab
+                * (g1_vx_leg1 * minus_masses_leg1_1_2
                     + minus_g2_vx_leg1 * base_parameters[20])
             + g2_vx_leg2
                 * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * base_parameters[5]);
         let minus_masses_leg3_1_2 = det_leg3 * inv_l_ab_my_2_leg3;
-        let t5_leg3 = t3_leg2
+        let t3_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[6]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                * (l2_x_leg3 * inv_l_ab_my_2_leg3
                     + minus_g2_vx_leg3 * base_parameters[22]);
         let masses_leg4_1_2 = det_leg4 * inv_l_ab_my_2_leg4;
-        let t2_leg4 = t5_leg3
+        let t2_leg4 = t3_leg3
             + g2_vx_leg4
-                * (g2_vx_leg4 * base_parameters[23] - l2_x_leg4 * inv_l_ab_my_2_leg4)
+                * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
                 * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
         let mass_platform = base_parameters[3] + base_parameters[52];
@@ -11722,46 +11716,47 @@ impl DualV {
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
         let t3_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * base_parameters[20];
-        let t4_leg2 = g2_vy_leg2 * base_parameters[21]
+        let t3_leg2 = g2_vy_leg2 * base_parameters[21]
             - minus_g1_vy_leg2 * masses_leg2_1_2;
-        let t5_leg2 = g2_vy_leg2 * masses_leg2_1_2
+        let t4_leg2 = g2_vy_leg2 * masses_leg2_1_2
             - minus_g1_vy_leg2 * base_parameters[5];
-        let t6_leg3 = g1_vy_leg3 * base_parameters[6]
+        let t4_leg3 = g1_vy_leg3 * base_parameters[6]
             + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t7_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
+        let t5_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
             + minus_g2_vy_leg3 * base_parameters[22];
-        let t8_leg3 = g1_vx_leg1 * t2_leg1 + minus_g2_vx_leg1 * t3_leg1
-            + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t6_leg3
-            + minus_g2_vx_leg3 * t7_leg3;
+        let t6_leg3 = g1_vx_leg1 * t2_leg1 + minus_g2_vx_leg1 * t3_leg1
+            + g2_vx_leg2 * t3_leg2 - minus_g1_vx_leg2 * t4_leg2 + g1_vx_leg3 * t4_leg3
+            + minus_g2_vx_leg3 * t5_leg3;
         let t3_leg4 = g2_vy_leg4 * base_parameters[23]
             - minus_g1_vy_leg4 * masses_leg4_1_2;
         let t4_leg4 = g2_vy_leg4 * masses_leg4_1_2
             - minus_g1_vy_leg4 * base_parameters[7];
-        let mass_1_2 = t8_leg3 + g2_vx_leg4 * t3_leg4 - minus_g1_vx_leg4 * t4_leg4;
+        let mass_1_2 = t6_leg3 + g2_vx_leg4 * t3_leg4 - minus_g1_vx_leg4 * t4_leg4;
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let t2_platform = s_phi * first_x_platform + c_phi * first_y_platform;
-        let minus_force_y_platform = t2_platform * rate_3_squared_leg1;
-        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
-            - (t9_leg3 + g2_vy_leg4 * force_on_u2_leg4
-                - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
-        let t3 = t2 - t1 * l_2_1;
-        let t10_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t3_leg1
-            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2 + g1_vy_leg3 * t6_leg3
-            + minus_g2_vy_leg3 * t7_leg3;
-        let mass_2_2 = t10_leg3 + g2_vy_leg4 * t3_leg4 - minus_g1_vy_leg4 * t4_leg4
+        let t7_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t3_leg1
+            + g2_vy_leg2 * t3_leg2 - minus_g1_vy_leg2 * t4_leg2 + g1_vy_leg3 * t4_leg3
+            + minus_g2_vy_leg3 * t5_leg3;
+        let mass_2_2 = t7_leg3 + g2_vy_leg4 * t3_leg4 - minus_g1_vy_leg4 * t4_leg4
             + mass_platform;
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t8_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
+            + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
+        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
+            - (t8_leg3 + g2_vy_leg4 * force_on_u2_leg4
+                - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
+        let t3 = t2 - t1 * l_2_1;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let t6_leg2 = g1_wz_leg2 * masses_leg2_1_2
+        let t5_leg2 = g1_wz_leg2 * masses_leg2_1_2
             - minus_g2_wz_leg2 * base_parameters[21];
-        let t7_leg2 = g1_wz_leg2 * base_parameters[5]
+        let t6_leg2 = g1_wz_leg2 * base_parameters[5]
             - minus_g2_wz_leg2 * masses_leg2_1_2;
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
@@ -11773,13 +11768,13 @@ impl DualV {
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t11_leg3 = g1_wz_leg3 * base_parameters[6]
+        let t9_leg3 = g1_wz_leg3 * base_parameters[6]
             + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
-        let t12_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+        let t10_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
             + minus_g2_wz_leg3 * base_parameters[22];
-        let t13_leg3 = g2_vy_leg2 * t6_leg2 - minus_g1_vy_leg2 * t7_leg2
-            - (g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1) + g1_vy_leg3 * t11_leg3
-            + minus_g2_vy_leg3 * t12_leg3;
+        let t11_leg3 = g2_vy_leg2 * t5_leg2 - minus_g1_vy_leg2 * t6_leg2
+            - (g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1) + g1_vy_leg3 * t9_leg3
+            + minus_g2_vy_leg3 * t10_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
@@ -11787,35 +11782,35 @@ impl DualV {
             - minus_g1_wz_leg4 * masses_leg4_1_2;
         let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2
             - minus_g1_wz_leg4 * base_parameters[7];
-        let mass_2_3 = t13_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
-            + t1_platform;
-        let t14_leg3 = g2_vx_leg2 * t6_leg2 - minus_g1_vx_leg2 * t7_leg2
-            - (g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1) + g1_vx_leg3 * t11_leg3
-            + minus_g2_vx_leg3 * t12_leg3;
-        let mass_1_3 = t14_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
-            - t2_platform;
+        let mass_2_3 = t11_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
+            + c_phi * first_x_platform - s_phi * first_y_platform;
+        let t12_leg3 = g2_vx_leg2 * t5_leg2 - minus_g1_vx_leg2 * t6_leg2
+            - (g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1) + g1_vx_leg3 * t9_leg3
+            + minus_g2_vx_leg3 * t10_leg3;
+        let mass_1_3 = t12_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
+            - (s_phi * first_x_platform + c_phi * first_y_platform);
         let l_3_1 = mass_1_3 * inv_pivot_1;
         let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 / pivot_2;
-        let t15_leg3 = g2_wz_leg1 * force_on_u2_leg1
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t13_leg3 = g2_wz_leg1 * force_on_u2_leg1
             - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
             + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
             + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
             - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
         let t4 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
             + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
-            - (t15_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - (t13_leg3 + g2_wz_leg4 * force_on_u2_leg4
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
-        let t16_leg3 = minus_g1_wz_leg1 * t4_leg1 + g2_wz_leg1 * t5_leg1
-            + g1_wz_leg2 * t7_leg2 - minus_g2_wz_leg2 * t6_leg2 + g1_wz_leg3 * t11_leg3
-            + minus_g2_wz_leg3 * t12_leg3;
+        let t14_leg3 = minus_g1_wz_leg1 * t4_leg1 + g2_wz_leg1 * t5_leg1
+            + g1_wz_leg2 * t6_leg2 - minus_g2_wz_leg2 * t5_leg2 + g1_wz_leg3 * t9_leg3
+            + minus_g2_wz_leg3 * t10_leg3;
         let inertia_zz_platform = base_parameters[0] + base_parameters[49];
-        let mass_3_3 = t16_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
+        let mass_3_3 = t14_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
             + inertia_zz_platform;
         let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::mass(pivot_3)?;
         let t5 = (t4 - t1 * l_3_1 - l_3_2 * t3) / pivot_3;
-        let t6 = t3 / pivot_2 - l_3_2 * t5;
+        let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.

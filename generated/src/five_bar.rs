@@ -45,12 +45,12 @@
 /// | `inverse_dynamics_base` | 182, 2 √, 4 sg, 7 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 146, 4 sc, 4 sg, 3 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 210, 3 √, 2 sc, 4 sg, 9 gd |  |
-/// | `mass_matrix` | 110, 2 √, 6 gd |  |
-/// | `mass_matrix_base` | 96, 2 √, 6 gd |  |
+/// | `mass_matrix` | 111, 2 √, 6 gd |  |
+/// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
 /// | `bias` | 183, 2 √, 4 sg, 6 gd |  |
-/// | `bias_base` | 158, 2 √, 4 sg, 6 gd |  |
+/// | `bias_base` | 160, 2 √, 4 sg, 6 gd |  |
 /// | `forward_dynamics` | 260, 2 √, 4 sg, 8 gd |  |
-/// | `forward_dynamics_base` | 226, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics_base` | 227, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// # Names
@@ -4389,7 +4389,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 110 operations (43 additions, 55 multiplications, 12 divisions), 2 square roots, 6 guards, 109 intermediates.
+    /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4415,8 +4415,9 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -4495,7 +4496,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 96 operations (35 additions, 49 multiplications, 12 divisions), 2 square roots, 6 guards, 95 intermediates.
+    /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4521,16 +4522,18 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let g2_vx_left = l1_x_left / det_left;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
         let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let force1_y_by_2_left = minus_s2_left * base_parameters[15];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
@@ -4564,8 +4567,8 @@ impl FiveBar {
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left / det_left;
-        let g2_vy_left = l1_y_left / det_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let t2_left = g2_vy_left * base_parameters[13]
             - masses_left_1_2 * minus_g1_vy_left;
         let t3_left = g2_vy_left * masses_left_1_2
@@ -4763,7 +4766,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 158 operations (59 additions, 88 multiplications, 11 divisions), 2 square roots, 4 signs, 6 guards, 158 intermediates.
+    /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4779,8 +4782,6 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -4796,8 +4797,9 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -4823,26 +4825,27 @@ impl FiveBar {
             * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
         let c2_left = INV_HALF * t2_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
         let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
             - base_parameters[15] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            - base_parameters[5] * bias_a1_x_left;
         let tau_1_left = base_parameters[11]
             - (base_parameters[7] * minus_rate_1_left
                 + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + minus_bias_a_on_f2_left * (base_parameters[15] * INV_L_2) - tau_2_left;
+        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[5] * bias_a1_x_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            - base_parameters[15] * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
+            + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -4855,44 +4858,45 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g1_vx_right = l2_x_right / det_right;
-        let minus_g2_vx_right = l1_x_right / det_right;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right / det_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right / det_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = (bias_a_on_f1_right
-            + rate_1_squared_right * t3_right) / det_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right
-            - base_parameters[6] * bias_a1_x_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             base_parameters[18],
             minus_qd_2_right,
         );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + minus_bias_a_on_f2_right * (INV_L_2 * base_parameters[16])
-            + minus_tau_2_right;
-        let minus_bias_rate_dot_2_right = (minus_bias_a_on_f2_right
-            + rate_2_squared_right * t3_right) / det_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right
+            + base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
+            - base_parameters[16] * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
+            + tau_1_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
         let c2_right = INV_HALF * t2_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - l_1_rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
         let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
             + base_parameters[16] * bias_a2_x_right;
@@ -5121,7 +5125,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 226 operations (85 additions, 125 multiplications, 16 divisions), 2 square roots, 4 signs, 8 guards, 226 intermediates.
+    /// 227 operations (85 additions, 132 multiplications, 10 divisions), 2 square roots, 4 signs, 8 guards, 227 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5159,7 +5163,8 @@ impl FiveBar {
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        let g1_vx_right = l2_x_right / det_right;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -5218,10 +5223,10 @@ impl FiveBar {
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right / det_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right / det_right;
-        let minus_g2_vy_right = l1_y_right / det_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
@@ -5233,8 +5238,8 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = (bias_a_on_f1_right
-            + rate_1_squared_right * t2_right) / det_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
@@ -5247,10 +5252,10 @@ impl FiveBar {
         let force_on_u1_right = minus_tau_2_right
             + base_parameters[2] * bias_rate_dot_1_right
             + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
+            + minus_masses_right_1_2 * (k_right * minus_bias_a_on_f2_right)
             + tau_1_right;
-        let minus_bias_rate_dot_2_right = (minus_bias_a_on_f2_right
-            + rate_2_squared_right * t2_right) / det_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);

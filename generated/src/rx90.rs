@@ -25,7 +25,7 @@
 /// | `inverse_dynamics_base` | 522, 5 sc, 6 sg |  |
 /// | `mass_matrix` | 244, 5 sc |  |
 /// | `mass_matrix_base` | 226, 5 sc |  |
-/// | `bias` | 490, 5 sc, 6 sg |  |
+/// | `bias` | 491, 5 sc, 6 sg |  |
 /// | `bias_base` | 470, 5 sc, 6 sg |  |
 /// | `forward_dynamics` | 884, 5 sc, 6 sg, 6 gd |  |
 /// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 6 gd |  |
@@ -2372,7 +2372,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 490 operations (245 additions, 245 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 494 intermediates.
+    /// 491 operations (245 additions, 246 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 495 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2389,6 +2389,8 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         /// 2 d3
         const TWICE_D3: ::core::primitive::f64 = 0.9;
         // --- sines and cosines
@@ -2400,8 +2402,8 @@ impl Rx90 {
         let w2_y_arm = c2_arm * joint_velocities[0];
         let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
         let t1_arm = parameters[40] + parameters[54] + parameters[68];
-        let t2_arm = D3 * (parameters[26] + t1_arm);
-        let t3_arm = D3 * t2_arm;
+        let t2_arm = parameters[26] + t1_arm;
+        let t3_arm = D3_SQUARED * t2_arm;
         let t4_arm = parameters[5] - (parameters[8] + t3_arm);
         let t5_arm = parameters[10] + t3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
@@ -2539,11 +2541,11 @@ impl Rx90 {
         let moment4_x_arm = t13_arm + bias_a4_z_arm * my_4_minus_mz_5
             + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
         let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
         let t20_arm = w4_x_w4_z_arm * (t12_arm - zz_4_plus_yy_5)
             + parameters[32] * bias_u4_zy_arm
-            + parameters[33] * (minus_bias_u4_xx_arm - minus_bias_u3_yy_arm)
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
             - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
         let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
         let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
@@ -2554,6 +2556,7 @@ impl Rx90 {
             - bias_a5_x_arm * my_5_plus_mz_6
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
         let moment4_y_arm = t20_arm - moment5_z_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
         let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
         let minus_bias_u6_xx_arm = t19_arm + minus_bias_u6_yy_arm;
         let force6_x_arm = parameters[66] * bias_u6_xy_arm
@@ -2570,7 +2573,7 @@ impl Rx90 {
         let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
             - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
             - s5_arm * force5_y_arm;
-        let minus_bias_u4_yy_arm = w5_y_squared_arm + w5_x_squared_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
         let force5_z_arm = parameters[51] * bias_u5_zx_arm
             + bias_u5_zy_arm * my_5_plus_mz_6
             - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
@@ -2589,7 +2592,7 @@ impl Rx90 {
         let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
         let t23_arm = minus_w4_x_w4_y_arm * t12_arm
             - minus_bias_wd3_y_arm * zz_4_plus_yy_5
-            + parameters[32] * (minus_bias_u4_yy_arm - minus_bias_u4_xx_arm)
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
             + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
         let moment4_z_arm = t23_arm
             - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
@@ -2612,6 +2615,9 @@ impl Rx90 {
             + ::overact::math::signed(parameters[3], joint_velocities[0])
             + parameters[4];
         let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
+            - parameters[12] * bias_a2_x_arm;
         let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
         let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
             + s4_arm * minus_force4_y_arm;
@@ -2622,15 +2628,12 @@ impl Rx90 {
             + c5_arm * force5_y_arm;
         let force3_y_arm = parameters[23] * bias_u3_xy_arm
             - minus_bias_u3_yy_arm * t10_arm + force4_z_arm;
-        let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (parameters[11] + t2_arm)
-            - parameters[12] * bias_a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
         let t25_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
             - bias_u3_xy_arm * t8_arm + parameters[23] * bias_a3_y_arm
             - bias_a3_x_arm * t10_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
         let moment3_z_arm = t25_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t24_arm + moment3_z_arm;
+        let moment2_z_arm = t24_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
         let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];

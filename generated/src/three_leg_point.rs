@@ -45,12 +45,12 @@
 /// | `inverse_dynamics_base` | 268, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 233, 6 sc, 6 sg, 5 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
-/// | `mass_matrix` | 193, 3 √, 9 gd |  |
-/// | `mass_matrix_base` | 166, 3 √, 9 gd |  |
+/// | `mass_matrix` | 195, 3 √, 9 gd |  |
+/// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
 /// | `bias` | 230, 3 √, 6 sg, 9 gd |  |
-/// | `bias_base` | 210, 3 √, 6 sg, 9 gd |  |
-/// | `forward_dynamics` | 372, 3 √, 6 sg, 11 gd |  |
-/// | `forward_dynamics_base` | 305, 3 √, 6 sg, 11 gd |  |
+/// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
+/// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_preloaded` | 317, 4 √, 6 sg, 11 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
@@ -84,7 +84,7 @@
 /// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
 /// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `atip_x_leg2` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
@@ -5470,7 +5470,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 193 operations (76 additions, 111 multiplications, 6 divisions), 3 square roots, 9 guards, 193 intermediates.
+    /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5492,14 +5492,13 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg1
-        let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -5512,10 +5511,12 @@ impl ThreeLegPoint {
         let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
         let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
-        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -5550,7 +5551,7 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg2
                 * (g1_vx_leg2 * masses_leg2_1_2 - minus_g2_vx_leg2 * parameters[15]);
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -5574,7 +5575,7 @@ impl ThreeLegPoint {
         let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let force1_y_by_2_leg3 = c2_leg3 * parameters[26] - s2_leg3 * parameters[27];
         let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
-        let t1_leg3 = t2_leg2
+        let t2_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
             - minus_g2_vx_leg3
@@ -5598,18 +5599,19 @@ impl ThreeLegPoint {
         // --- leg3
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = minus_fk2_y_leg2 + fk1_y_leg2 - fk2_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let t2_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
-        let t3_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
-        let t4_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
+        let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
+        let t4_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
+        let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
             - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
-            + g1_vx_leg3 * t2_leg3 - minus_g2_vx_leg3 * t3_leg3;
-        let t5_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t3_leg3
-            - minus_g1_vy_leg3 * t2_leg3;
+            + g1_vx_leg3 * t3_leg3 - minus_g2_vx_leg3 * t4_leg3;
+        let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t4_leg3
+            - minus_g1_vy_leg3 * t3_leg3;
         ::core::result::Result::Ok([
-            [t1_leg3 + parameters[30], t4_leg3], [t4_leg3, t5_leg3 + parameters[30]],
+            [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -5620,7 +5622,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 166 operations (64 additions, 96 multiplications, 6 divisions), 3 square roots, 9 guards, 166 intermediates.
+    /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5642,14 +5644,13 @@ impl ThreeLegPoint {
         /// radius
         const RADIUS: ::core::primitive::f64 = 0.35;
         // --- leg1
-        let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -5659,10 +5660,12 @@ impl ThreeLegPoint {
         let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
         let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
-        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
@@ -5682,6 +5685,9 @@ impl ThreeLegPoint {
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+        let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
+        let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
         let t2_leg2 = minus_g2_vx_leg1
             * (minus_g2_vx_leg1 * base_parameters[13]
                 - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
@@ -5689,12 +5695,13 @@ impl ThreeLegPoint {
                 * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
+                * (g1_vx_leg2 * base_parameters[2]
+                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * base_parameters[17]
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
                     + minus_g2_vx_leg2 * base_parameters[14]);
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -5712,12 +5719,15 @@ impl ThreeLegPoint {
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let t1_leg3 = t2_leg2
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+        let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
+        let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
+        let t2_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
-                    + minus_fk2_x_leg3 * base_parameters[18])
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (fk1_x_leg3 * base_parameters[18]
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * base_parameters[15]);
         // --- leg1
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -5734,29 +5744,29 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
-        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
-            + base_parameters[17] * minus_fk2_y_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let t4_leg2 = base_parameters[17] * fk1_y_leg2
+        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
+            + g2_vy_leg2 * minus_masses_leg2_1_2;
+        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
             + g2_vy_leg2 * base_parameters[14];
         // --- leg3
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk2_y_leg3 = fk1_y_leg2 + minus_fk2_y_leg2 - minus_fk1_y_leg3;
-        let t2_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            + base_parameters[18] * fk2_y_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let t3_leg3 = base_parameters[18] * minus_fk1_y_leg3
+        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            + g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             + g2_vy_leg3 * base_parameters[15];
-        let t4_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
+        let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
             - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
-            - (g1_vx_leg3 * t2_leg3 + minus_g2_vx_leg3 * t3_leg3);
-        let t5_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
+            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
+        let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
             + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
-            + minus_g1_vy_leg3 * t2_leg3 + g2_vy_leg3 * t3_leg3;
+            + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
         ::core::result::Result::Ok([
-            [t1_leg3 + base_parameters[0], t4_leg3], [t4_leg3, t5_leg3 + base_parameters[0]],
+            [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -5956,7 +5966,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 210 operations (83 additions, 121 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 211 intermediates.
+    /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5981,14 +5991,13 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg1
-        let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -6005,33 +6014,39 @@ impl ThreeLegPoint {
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
         let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
+            + L_1 * minus_force2_y_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(
             base_parameters[19],
             minus_qd_2_leg1,
         );
         let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
         let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
         let tau_1_leg1 = base_parameters[4] * rate_1_leg1
             + ::overact::math::signed(base_parameters[7], rate_1_leg1)
             + base_parameters[10];
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
         let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + minus_tau_2_leg1;
-        // --- leg2
-        let t1_leg2 = pose[0] + 0.3031088913245535;
+            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
+            + minus_tau_2_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
@@ -6051,15 +6066,15 @@ impl ThreeLegPoint {
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let t1_leg3 = INV_L_1 * y_plus_half_radius;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg2 = k_leg2
@@ -6079,8 +6094,7 @@ impl ThreeLegPoint {
             + minus_bias_a_on_f1_leg2 * base_parameters[17];
         let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
         // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -6097,14 +6111,16 @@ impl ThreeLegPoint {
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = INV_L_1 * t2_leg3 - fk1_x_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let fk1_y_leg3 = fk2_y_leg3 + t1_leg3;
-        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg3 = k_leg3
@@ -6129,8 +6145,8 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t2 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            + g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
-            + g1_vy_leg3 * force_on_u1_leg3;
+            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+            - minus_g1_vy_leg3 * force_on_u1_leg3;
         ::core::result::Result::Ok([t1, t2])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -6143,7 +6159,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 372 operations (146 additions, 217 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 373 intermediates.
+    /// 374 operations (145 additions, 220 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 375 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6171,11 +6187,13 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg2
-        let t1_leg2 = 0.5 * (pose[1] + HALF_RADIUS);
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
-        let half_x = 0.5 * pose[0];
-        let d_y_leg2 = half_x - 0.8660254037844386 * pose[1];
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -6195,7 +6213,7 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -6205,8 +6223,7 @@ impl ThreeLegPoint {
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
-        let d_y_leg3 = pose[0] - d_y_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -6235,17 +6252,18 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
-        let c2_leg2 = 8.680555555555555 * t2_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
         let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + bias_a_on_f2_leg2 * c2_leg2);
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
         let t3_leg2 = parameters[10] + L_1_SQUARED * parameters[18];
         let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + minus_bias_a_on_f1_leg2 * c2_leg2);
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
             - parameters[16] * rate_2_squared_leg2;
+        let c2_leg2 = 8.680555555555555 * t2_leg2;
         let t4_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
         let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
         let minus_force2_y_leg2 = t4_leg2 + my_2_leg2_rate_2_squared_leg2;
@@ -6298,9 +6316,7 @@ impl ThreeLegPoint {
             - parameters[5] * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let fk2_y_leg3 = minus_fk2_y_leg2 + fk1_y_leg2 - minus_fk1_y_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
@@ -6308,40 +6324,41 @@ impl ThreeLegPoint {
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * t1_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let t2_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
+        let c2_leg3 = 8.680555555555555 * t2_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
+        let t3_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
             - parameters[26] * rate_2_squared_leg3;
-        let c2_leg3 = 8.680555555555555 * t1_leg3;
-        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let t4_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let minus_force2_y_leg3 = t4_leg3 + my_2_leg3_rate_2_squared_leg3;
         let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t2_leg3
+        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t3_leg3
             + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
             + tau_1_leg3 - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
+        let moment2_z_leg3 = L_1 * (t4_leg3 - my_2_leg3_rate_2_squared_leg3)
             - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t4_leg3;
+            + g1_vx_leg3 * torques[2] - t5_leg3;
         let masses_leg2_1_1 = t3_leg2 + parameters[11];
         let minus_masses_leg2_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg2 * parameters[17])
@@ -6361,18 +6378,18 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg1
                     * (minus_g1_vx_leg1 * minus_masses_leg1_1_2
                         - minus_g2_vx_leg1 * parameters[5]));
-        let masses_leg3_1_1 = t2_leg3 + parameters[21];
+        let masses_leg3_1_1 = t3_leg3 + parameters[21];
         let minus_masses_leg3_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg3 * parameters[27])
-                - 85.15625 * (t1_leg3 * parameters[26]));
-        let t5_leg3 = t5_leg2
+                - 85.15625 * (t2_leg3 * parameters[26]));
+        let t6_leg3 = t5_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
                 * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * parameters[25]);
-        let mass_1_1 = t5_leg3 + parameters[30];
+        let mass_1_1 = t6_leg3 + parameters[30];
         ::overact::guard::mass(mass_1_1)?;
         let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * parameters[5];
@@ -6382,25 +6399,25 @@ impl ThreeLegPoint {
             + g2_vy_leg2 * minus_masses_leg2_1_2;
         let t7_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
             + g2_vy_leg2 * parameters[15];
-        let t6_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
+        let t7_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
             + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t7_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+        let t8_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             + g2_vy_leg3 * parameters[25];
         let mass_1_2 = minus_g2_vx_leg1 * t4_leg1 - minus_g1_vx_leg1 * t5_leg1
             - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
-            - (g1_vx_leg3 * t6_leg3 + minus_g2_vx_leg3 * t7_leg3);
+            - (g1_vx_leg3 * t7_leg3 + minus_g2_vx_leg3 * t8_leg3);
         let l_2_1 = mass_1_2 / mass_1_1;
-        let t8_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t9_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
+        let t10_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
             + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
-            + minus_g1_vy_leg3 * t6_leg3 + g2_vy_leg3 * t7_leg3;
-        let mass_2_2 = t9_leg3 + parameters[30];
+            + minus_g1_vy_leg3 * t7_leg3 + g2_vy_leg3 * t8_leg3;
+        let mass_2_2 = t10_leg3 + parameters[30];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t8_leg3 - t1 * l_2_1) / pivot_2;
+            - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t2, t2])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -6413,7 +6430,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 305 operations (121 additions, 176 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 306 intermediates.
+    /// 306 operations (119 additions, 179 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 308 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6446,8 +6463,8 @@ impl ThreeLegPoint {
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let half_x = 0.5 * pose[0];
-        let d_y_leg3 = half_x + 0.8660254037844386 * pose[1];
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
@@ -6468,7 +6485,7 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -6478,17 +6495,14 @@ impl ThreeLegPoint {
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -6536,8 +6550,8 @@ impl ThreeLegPoint {
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let t2_leg3 = y_plus_half_radius * INV_L_1;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
+        let t3_leg2 = y_plus_half_radius * INV_L_1;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
         let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -6558,16 +6572,18 @@ impl ThreeLegPoint {
             + minus_bias_a_on_f1_leg2 * base_parameters[17];
         let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let fk1_y_leg3 = fk2_y_leg3 + t2_leg3;
-        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg3 = k_leg3
@@ -6576,8 +6592,8 @@ impl ThreeLegPoint {
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
         let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
             + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
@@ -6585,60 +6601,63 @@ impl ThreeLegPoint {
         let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
             + bias_a_on_f1_leg3 * base_parameters[18];
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
             - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
             - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t3_leg3;
-        let t3_leg2 = minus_g2_vx_leg1
+            + g1_vx_leg3 * torques[2] - t2_leg3;
+        let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
+        let t4_leg2 = minus_g2_vx_leg1
             * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
             - minus_g1_vx_leg1
                 * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
+                * (g1_vx_leg2 * base_parameters[2]
+                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * base_parameters[17]
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
                     + minus_g2_vx_leg2 * base_parameters[14]);
         let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
-        let t4_leg3 = t3_leg2
+        let t3_leg3 = t4_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
                 * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * base_parameters[15]);
-        let mass_1_1 = t4_leg3 + base_parameters[0];
+        let mass_1_1 = t3_leg3 + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
         let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
             + minus_g2_vy_leg1 * base_parameters[13];
         let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
-        let t4_leg2 = minus_fk2_y_leg2 * base_parameters[17]
+        let t5_leg2 = g2_vy_leg2 * minus_masses_leg2_1_2
             - g1_vy_leg2 * base_parameters[2];
-        let t5_leg2 = g2_vy_leg2 * base_parameters[14]
-            - minus_fk1_y_leg2 * base_parameters[17];
-        let t5_leg3 = g2_vy_leg3 * minus_masses_leg3_1_2
-            - g1_vy_leg3 * base_parameters[3];
-        let t6_leg3 = g2_vy_leg3 * base_parameters[15]
-            - g1_vy_leg3 * minus_masses_leg3_1_2;
+        let t6_leg2 = g2_vy_leg2 * base_parameters[14]
+            - g1_vy_leg2 * minus_masses_leg2_1_2;
+        let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            - minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+            - minus_g2_vy_leg3 * base_parameters[15];
         let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
-            - (g1_vx_leg2 * t4_leg2 + minus_g2_vx_leg2 * t5_leg2)
-            - (g1_vx_leg3 * t5_leg3 + minus_g2_vx_leg3 * t6_leg3);
+            - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
+            - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t7_leg3 = g1_vy_leg1 * force_on_u1_leg1
+        let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            + g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
-            + g1_vy_leg3 * force_on_u1_leg3;
-        let t8_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t5_leg2 - g1_vy_leg2 * t4_leg2 + g2_vy_leg3 * t6_leg3
-            - g1_vy_leg3 * t5_leg3;
-        let mass_2_2 = t8_leg3 + base_parameters[0];
+            + g1_vy_leg2 * force_on_u1_leg2
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
+        let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t4_leg3
+            - minus_g2_vy_leg3 * t5_leg3;
+        let mass_2_2 = t7_leg3 + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - t7_leg3 - t1 * l_2_1) / pivot_2;
+            - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
