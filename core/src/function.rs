@@ -183,7 +183,7 @@ impl Function {
             },
             Self::PoseStep => Entry {
                 name: "pose_step",
-                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21).",
+                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21). Where the elimination would lose digits it is refused, though J_p^inv be regular.",
                 inputs: &[Pose, Actuators],
                 rows: Extent::Dof,
                 columns: None,

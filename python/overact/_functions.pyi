@@ -19,7 +19,8 @@ class Functions:
     pose (m, rad). Output: (n,)."""
     pose_step: Function
     """The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q
-    - q(x)), eq. (21). Inputs: pose (m, rad), actuators (n; m, rad). Output: (r,)."""
+    - q(x)), eq. (21). Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    Inputs: pose (m, rad), actuators (n; m, rad). Output: (r,)."""
     inverse_jacobian: Function
     """J_p^inv: actuator velocities = J_p^inv v, eq. (20). Inputs: pose (m, rad). Output: (n, r)."""
     inverse_jacobian_from_joints: Function

@@ -9,16 +9,21 @@
 //!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
 //!   adjugate over determinant: one division a block.
 //!
-//! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So d² is
-//! guarded as other determinants are; whoever takes the steps then goes on by normal equations.
+//! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
+//! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
 
 use super::elimination::{Rows, adjugate};
+use super::guard::GuardKind;
 use super::linear::{apply, dot, product};
 use super::sheet::Sheet;
 use crate::cas::Expr;
 use crate::mechanism::numeric::best_conditioned;
 use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
+
+/// How much sooner the determinant of a block is refused than one that tells of a singular J: of what is lost with
+/// its square, 10⁻⁶ of a step is left.
+const SOONER: f64 = 1e4;
 
 /// Columns that are taken out together.
 const BLOCK: usize = 2;
@@ -46,10 +51,25 @@ impl<'a> Sheet<'a, '_> {
         let mut determinants = Vec::new();
         match self.by_blocks((rows, right), &mut determinants) {
             Some(step) => {
-                self.guard_platform(&determinants, ActuatorGroup::All);
+                // The last one vanishes where J does.
+                if let Some((last, inner)) = determinants.split_last() {
+                    self.guard_blocks(inner);
+                    self.guard_platform(&[*last], ActuatorGroup::All);
+                }
                 step
             }
             None => self.least_squares(&differences),
+        }
+    }
+
+    /// Guards determinants of blocks that may vanish where J is regular.
+    fn guard_blocks(&mut self, determinants: &[Expr<'a>]) {
+        let before = self.guards.len();
+        self.guard_platform(determinants, ActuatorGroup::All);
+        for guard in &mut self.guards[before..] {
+            if let GuardKind::Platform { home, .. } = &mut guard.kind {
+                *home *= SOONER;
+            }
         }
     }
 
@@ -73,7 +93,7 @@ impl<'a> Sheet<'a, '_> {
         (rows, right)
     }
 
-    /// The solution of A x = b; what must not vanish of the determinants that are divided by is added to those given. `None` where a
+    /// The solution of A x = b; the determinants that are divided by are added to those given. `None` where a
     /// block is singular at home.
     fn by_blocks(
         &self,
@@ -95,7 +115,7 @@ impl<'a> Sheet<'a, '_> {
         let cofactors = adjugate(&p);
         let column: Vec<Expr<'a>> = cofactors.iter().map(|row| row[0]).collect();
         let determinant = dot(&p[0], &column);
-        determinants.push(determinant.squared());
+        determinants.push(determinant);
         let reciprocal = determinant.reciprocal();
         // R P⁻¹
         let factors: Rows<'a> = product(&r, &cofactors)

@@ -13,9 +13,9 @@
 //! axis, which moves the body behind the joint, has the joint's name: a universal joint `cross` has the axes
 //! `cross_1` and `cross`.
 
+use super::joint_shape::JointShape;
 use super::model::{JointKind, Spanned};
 use super::reader::{Item, Table};
-use super::shape::JointShape;
 use crate::diagnostic::Code;
 use overact_core::StandardParameter;
 

@@ -3,11 +3,12 @@
 use super::dimension::Dimension;
 use super::doubt;
 use super::friction;
+use super::joint_shape::JointShape;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
 use super::scalar::Scalar;
 use super::scope::Scope;
-use super::shape::{JointShape, Shape};
+use super::shape::Shape;
 use super::spring;
 use super::value::Value;
 use crate::cas::{Angle, Number, Ratio};

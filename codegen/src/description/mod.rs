@@ -27,6 +27,7 @@ mod geometry;
 mod gravity;
 mod inventory;
 mod joint;
+mod joint_shape;
 mod known;
 mod leg;
 mod model;

@@ -2,6 +2,7 @@
 
 use super::compound::{WORDS, Word};
 use super::doubt;
+use super::joint_shape::{JointShape, STEPS};
 use super::model::{JointKind, Spanned};
 use super::motor::{self, MotorShape};
 use super::parameters::Owner;
@@ -25,27 +26,6 @@ pub(super) struct Shape<'c, 't> {
     pub(super) span: Span,
 }
 
-/// A joint's table.
-pub(super) struct JointShape<'c, 't> {
-    pub(super) name: Spanned<String>,
-    pub(super) kind: Spanned<JointKind>,
-    pub(super) antecedent: Option<usize>,
-    /// γ, b, α, d, θ, r where they are given.
-    pub(super) steps: [Option<Item<'c, 't>>; 6],
-    /// Whether γ and α are right angles instead: an axis within a joint of several.
-    pub(super) turned: bool,
-    pub(super) actuated: bool,
-    pub(super) parameters: Vec<StandardParameter>,
-    pub(super) spring: Option<Item<'c, 't>>,
-    pub(super) known: Option<Item<'c, 't>>,
-    pub(super) stribeck: Option<Item<'c, 't>>,
-    pub(super) load: Option<Item<'c, 't>>,
-    pub(super) span: Span,
-}
-
-/// Keys of a joint's geometry, in the order of the MDH step.
-pub(super) const STEPS: [&str; 6] = ["gamma", "b", "alpha", "d", "theta", "r"];
-
 /// A leg's end.
 pub(super) struct EndShape<'c, 't> {
     pub(super) rigid: bool,
@@ -56,19 +36,6 @@ pub(super) struct EndShape<'c, 't> {
     /// The body of the skeleton that the end meets; the platform without it.
     pub(super) body: Option<Spanned<String>>,
     pub(super) span: Span,
-}
-
-impl JointShape<'_, '_> {
-    /// Name of the joint's variable in expressions of the leg: `q1`, `q_elbow`.
-    pub(super) fn variable(&self) -> String {
-        let name = &self.name.value;
-        let numbered = name.starts_with(|c: char| c.is_ascii_digit());
-        if numbered {
-            format!("q{name}")
-        } else {
-            format!("q_{name}")
-        }
-    }
 }
 
 /// Reads a shape; `None` if it is no table.

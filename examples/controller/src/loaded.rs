@@ -11,7 +11,7 @@
 ///
 /// | function | once | each step |
 /// |---|---|---|
-/// | `inverse_dynamics` | 481, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 15 gd |  |
 ///
 /// # Names
 ///
@@ -44,7 +44,6 @@
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `schur_2_3` | S' | S after elimination of the columns before |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
 ///
 /// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
@@ -155,7 +154,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 481 operations (213 additions, 251 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 483 intermediates.
+    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -179,10 +178,8 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
-        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
+        let d_y_leg1 = pose[1] + t1_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -198,7 +195,8 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -248,23 +246,22 @@ impl DualV {
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let rate_dot_2_leg2 = (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2) / det_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
         let moment2_z_leg2 = 0.00002058962223353694 * rate_dot_2_leg2
@@ -277,8 +274,8 @@ impl DualV {
         let tau_3_leg2 = 0.00000001810735080471036 * qd_3_leg2
             + ::overact::math::signed(0.01038045756726188, qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let minus_rate_dot_1_leg2 = (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2)
+            / det_leg2;
         let minus_tau_1_leg2 = 0.019974974613703813 * minus_rate_1_leg2
             + ::overact::math::signed(0.10056998680223246, minus_rate_1_leg2)
             + 0.004134893087019274;
@@ -288,6 +285,7 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - t1_leg3;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -301,6 +299,7 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -316,9 +315,9 @@ impl DualV {
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let tau_1_leg3 = 0.039649798337018656 * rate_1_leg3
@@ -331,14 +330,14 @@ impl DualV {
         let force_on_u1_leg3 = 0.04805383494499909 * rate_dot_1_leg3
             + 0.00008112715886872903 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
         let moment2_z_leg3 = 0.00005075363513735304 * minus_rate_dot_2_leg3
             - 0.00008112715886872903 * minus_a_on_f1_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = 0.000000017313663972054018 * qd_3_leg3
             + ::overact::math::signed(0.009789945271952191, qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -389,7 +388,7 @@ impl DualV {
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
         let force_x_platform = 7.340451512286127 * acceleration[0]
             + 1.1545155579924413 * a_arm_y_leg3 - 0.001579372714053284 * a_arm_x_leg1;
-        let t1_platform = t2_leg3 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
+        let t1_platform = t3_leg3 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
             + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
@@ -398,16 +397,15 @@ impl DualV {
             25.429161076750646,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let l_2_1 = s_1_2 / s_1_1;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = 7.340451512286127 * acceleration[1]
             + 1.1545155579924413 * a_arm_x_leg1 + 0.001579372714053284 * a_arm_y_leg3;
-        let t1 = t3_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
+        let t1 = t4_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
             + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
@@ -427,24 +425,24 @@ impl DualV {
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
+        let l_3_1 = s_1_3 / s_1_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
         let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let moment_z_platform = acceleration[1]
-            * (0.00017373099854586124 * s_phi - p_y_leg1 * 1.1545155579924413)
+            * (p_x_leg3 * 0.001579372714053284 - 0.12699671137916854 * c_phi)
             + acceleration[0]
-                * (p_x_leg3 * 1.1545155579924413 + 0.00017373099854586124 * c_phi)
+                * (0.12699671137916854 * s_phi + p_y_leg1 * 0.001579372714053284)
             + 0.036704916033894294 * acceleration[2];
-        let t2 = t4_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
+        let t2 = t5_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
             + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
             - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
@@ -457,7 +455,7 @@ impl DualV {
         )?;
         let t3 = t2 / pivot_3;
         let t4 = t1 / pivot_2 - l_3_2 * t3;
-        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
             g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),

@@ -12,7 +12,7 @@
 /// | function | once | each step |
 /// |---|---|---|
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
-/// | `inverse_dynamics` | 481, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 ///
 /// # Names
@@ -40,8 +40,7 @@
 /// | `v_arm_x_leg3` | ω × p | velocity of the leg's end beside the platform's origin |
 /// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end beside the platform's origin |
 /// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
-/// | `moment1_z_leg2` | m | moment of a body's inertial parameters about its origin |
+/// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg2` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
@@ -242,7 +241,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 481 operations (213 additions, 251 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 483 intermediates.
+    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -266,10 +265,8 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
-        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
+        let d_y_leg1 = pose[1] + t1_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -285,7 +282,8 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -305,18 +303,17 @@ impl DualV {
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let moment1_z_leg1 = 0.04453048911420754 * rate_dot_1_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
         let tau_1_leg1 = 0.029999722179847328 * rate_1_leg1
             + ::overact::math::signed(0.11985569222332705, rate_1_leg1)
             + 0.004159752894756029;
-        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = 0.008535456014915175
             - (0.00000006752479729920554 * minus_qd_2_leg1
                 + ::overact::math::signed(0.00991462620751174, minus_qd_2_leg1));
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + 0.000005168711019354161 * a_on_f2_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = 0.04453048911420754 * rate_dot_1_leg1
+            + 0.000005168711019354161 * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let minus_moment2_z_leg1 = 0.00002248639870435637 * minus_rate_dot_2_leg1
@@ -336,23 +333,22 @@ impl DualV {
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let rate_dot_2_leg2 = (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2) / det_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
         let moment2_z_leg2 = 0.00002058962223353694 * rate_dot_2_leg2
@@ -365,17 +361,18 @@ impl DualV {
         let tau_3_leg2 = 0.00000001810735080471036 * qd_3_leg2
             + ::overact::math::signed(0.01038045756726188, qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-        let minus_moment1_z_leg2 = 0.04811478221073617 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_1_leg2 = (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2)
+            / det_leg2;
         let minus_tau_1_leg2 = 0.019974974613703813 * minus_rate_1_leg2
             + ::overact::math::signed(0.10056998680223246, minus_rate_1_leg2)
             + 0.004134893087019274;
         let force_on_u1_leg2 = 0.00000335124576642444 * a_on_f2_leg2
-            - (minus_moment1_z_leg2 + minus_tau_1_leg2) - tau_2_leg2;
+            - 0.04811478221073617 * minus_rate_dot_1_leg2 - minus_tau_1_leg2
+            - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - t1_leg3;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -389,6 +386,7 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -404,30 +402,29 @@ impl DualV {
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-        let moment1_z_leg3 = 0.04805383494499909 * rate_dot_1_leg3;
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
         let tau_1_leg3 = 0.039649798337018656 * rate_1_leg3
             + ::overact::math::signed(0.15060236311801395, rate_1_leg3)
             + 0.0009640134986800234;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = 0.002029804994654387
             - (0.00000009637346970834657 * minus_qd_2_leg3
                 + ::overact::math::signed(0.0102077543876856, minus_qd_2_leg3));
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + 0.00008112715886872903 * a_on_f2_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = 0.04805383494499909 * rate_dot_1_leg3
+            + 0.00008112715886872903 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
         let moment2_z_leg3 = 0.00005075363513735304 * minus_rate_dot_2_leg3
             - 0.00008112715886872903 * minus_a_on_f1_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = 0.000000017313663972054018 * qd_3_leg3
             + ::overact::math::signed(0.009789945271952191, qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -444,31 +441,31 @@ impl DualV {
         let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
-        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
-        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
-        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4)
-            / det_leg4;
-        let minus_moment1_z_leg4 = 0.050666830508230606 * minus_rate_dot_1_leg4;
-        let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
-            + ::overact::math::signed(0.10986887003468548, minus_rate_1_leg4)
-            + 0.001454029351535881;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
+        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = 0.0000000955728788284811 * qd_2_leg4
             + ::overact::math::signed(0.01008072800356214, qd_2_leg4)
             + 0.003040155469275262;
-        let minus_force_on_u1_leg4 = minus_moment1_z_leg4 + minus_tau_1_leg4
-            + 0.000013210750116729909 * a_on_f2_leg4 + tau_2_leg4;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4)
+            / det_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
+            + ::overact::math::signed(0.10986887003468548, minus_rate_1_leg4)
+            + 0.001454029351535881;
+        let minus_force_on_u1_leg4 = tau_2_leg4
+            + 0.050666830508230606 * minus_rate_dot_1_leg4
+            + 0.000013210750116729909 * a_on_f2_leg4 + minus_tau_1_leg4;
         let rate_dot_2_leg4 = (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4) / det_leg4;
         let moment2_z_leg4 = 0.000013210750116729909 * minus_a_on_f1_leg4
             - 0.000029825765005556115 * rate_dot_2_leg4;
@@ -479,7 +476,7 @@ impl DualV {
         let force_x_platform = 1.920521204934164 * acceleration[0]
             - (0.00012218958751573095 * a_arm_y_leg3
                 + 0.001632896850187524 * a_arm_x_leg1);
-        let t2 = t1 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
+        let t1_platform = t3_leg3 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
             + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
@@ -488,18 +485,17 @@ impl DualV {
             25.429161076750646,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let l_2_1 = s_1_2 / s_1_1;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = 0.001632896850187524 * a_arm_y_leg3
-            - 0.00012218958751573095 * a_arm_x_leg1
-            + 1.920521204934164 * acceleration[1];
-        let t4 = t3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
-            + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t2 * l_2_1;
+        let force_y_platform = 1.920521204934164 * acceleration[1]
+            + 0.001632896850187524 * a_arm_y_leg3
+            - 0.00012218958751573095 * a_arm_x_leg1;
+        let t1 = t4_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
+            + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
@@ -518,26 +514,26 @@ impl DualV {
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
+        let l_3_1 = s_1_3 / s_1_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
         let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let moment_z_platform = 0.020607684175340465 * acceleration[2]
-            + 0.000013440854626730402 * a_y_platform
-            + 0.0001796186535206276 * a_x_platform;
-        let t6 = t5 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
-            + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform - t2 * l_3_1
-            - l_3_2 * t4;
+        let moment_z_platform = acceleration[1]
+            * (0.000013440854626730402 * c_phi + 0.0001796186535206276 * s_phi)
+            - acceleration[0]
+                * (0.000013440854626730402 * s_phi - 0.0001796186535206276 * c_phi)
+            + 0.020607684175340465 * acceleration[2];
+        let t2 = t5_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
+            + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -546,14 +542,14 @@ impl DualV {
             0.3076928490286828,
             ::overact::ActuatorGroup::All,
         )?;
-        let t7 = t6 / pivot_3;
-        let t8 = t4 / pivot_2 - l_3_2 * t7;
-        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+        let t3 = t2 / pivot_3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
+        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
-            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8),
-            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
-            -(minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+            -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
