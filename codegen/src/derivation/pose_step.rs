@@ -22,8 +22,8 @@ use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
 
 /// How much sooner the determinant of a block is refused than one that tells of a singular J: of what is lost with
-/// its square, 10⁻⁶ of a step is left.
-const SOONER: f64 = 1e4;
+/// its square, 10⁻³ of a step is left at most, and steps converge.
+const SOONER: f64 = 1e3;
 
 /// Columns that are taken out together.
 const BLOCK: usize = 2;
