@@ -1,40 +1,7 @@
 //! The table of a robot's functions: names, meaning, equations, inputs, shapes.
 
+use crate::columns::Columns;
 use crate::size::{Extent, Input, Sizes};
-
-/// Which columns an identification model has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Columns {
-    /// All standard parameters whose column is not identically zero.
-    Standard,
-    /// The base parameters: independent columns only.
-    Base,
-}
-
-impl Columns {
-    /// `standard` or `base`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Standard => "standard",
-            Self::Base => "base",
-        }
-    }
-
-    /// The columns with this name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        let all = [Self::Standard, Self::Base];
-        all.into_iter().find(|columns| columns.name() == name)
-    }
-
-    const fn extent(self) -> Extent {
-        match self {
-            Self::Standard => Extent::Parameters,
-            Self::Base => Extent::BaseParameters,
-        }
-    }
-}
 
 /// What a robot needs to have a function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -10,6 +10,7 @@
 #![no_std]
 
 pub mod code;
+pub mod columns;
 pub mod error;
 pub mod function;
 pub mod limits;
@@ -20,8 +21,9 @@ pub mod text;
 pub mod trigonometry;
 
 pub use code::{Code, Explanation};
+pub use columns::Columns;
 pub use error::{ActuatorGroup, Actuators, Error, SampleError};
-pub use function::{Columns, Condition, Function};
+pub use function::{Condition, Function};
 pub use limits::Limits;
 pub use parameter::StandardParameter;
 pub use singular::{CLOSED, SINGULAR};

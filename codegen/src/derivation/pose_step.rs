@@ -5,7 +5,7 @@
 //!
 //! - The position of an actuator between two points is a length less a constant, q = w - c, and its row of J is
 //!   divided by w. Multiplied by w on both sides, no row is divided by anything.
-//! - The system is solved by blocks of two and three columns, whose rows are those of the largest determinant at
+//! - The system is solved by blocks of two and three columns, whose rows are the best conditioned ones at
 //!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
 //!   adjugate over determinant: one division a block.
 //!
@@ -21,8 +21,8 @@ use crate::mechanism::numeric::best_conditioned;
 use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
 
-/// How much sooner the determinant of a block is refused than one that tells of a singular J: of what is lost with
-/// its square, 10⁻³ of a step is left at most, and steps converge.
+/// How much sooner the determinant of a block is refused than one that tells of a singular J: a step of the 6-UPS is then
+/// off by 10⁻⁵ of itself at most, and in single precision the home configuration is still far from the bound.
 const SOONER: f64 = 1e3;
 
 /// Columns that are taken out together.

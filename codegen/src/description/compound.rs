@@ -15,7 +15,7 @@
 
 use super::joint_shape::JointShape;
 use super::model::{JointKind, Spanned};
-use super::reader::{Item, Table};
+use super::reader::Item;
 use crate::diagnostic::Code;
 use overact_core::StandardParameter;
 
@@ -89,16 +89,18 @@ impl Word {
         self.axes().len().max(1)
     }
 
-    /// What a table says that only a joint of one axis can have.
-    pub(super) fn check(self, table: &Table<'_, '_>, said: &[Option<&Item<'_, '_>>]) {
+    /// Reports what is said of a joint of several axes that only one of one axis can have.
+    pub(super) fn check<'i, 'c: 'i, 't: 'c>(
+        self,
+        said: impl IntoIterator<Item = &'i Item<'c, 't>>,
+    ) {
         if let Self::Simple(_) = self {
             return;
         }
-        for item in said.iter().flatten() {
+        for item in said {
             let message = format!("`{}` is said of a joint of one axis", item.key.value);
             let help = "write the axes of this joint as joints of their own, of type \"revolute\" and \"prismatic\"";
-            table
-                .context
+            item.context
                 .report(item.error(Code::CONTRADICTION, message).help(help));
         }
     }

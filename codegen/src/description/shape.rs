@@ -272,15 +272,12 @@ fn joint<'c, 't>(
         .as_ref()
         .and_then(Item::boolean)
         .unwrap_or(false);
-    let is_simple = matches!(word.value, Word::Simple(_));
-    if let (Some(item), true, true, JointKind::Fixed) =
-        (&actuated_item, actuated, is_simple, kind.value)
-    {
-        table
-            .context
-            .report(item.error(Code::ACTUATED, "a fixed joint cannot be actuated"));
-    }
-    if is_simple && kind.value == JointKind::Fixed {
+    let driven = actuated_item.as_ref().filter(|_| actuated);
+    if word.value == Word::Simple(JointKind::Fixed) {
+        if let Some(item) = driven {
+            let message = "a fixed joint cannot be actuated";
+            table.context.report(item.error(Code::ACTUATED, message));
+        }
         doubt::payload(table.context, &name);
     }
     let owner = Owner::Joint(word.value.last());
@@ -295,15 +292,8 @@ fn joint<'c, 't>(
     let load = table.get("friction_load");
     parameters.extend(load.as_ref().map(|_| StandardParameter::Fl));
     let known = table.get("known");
-    let driven = actuated_item.as_ref().filter(|_| actuated);
-    let of_one_axis = [
-        spring.as_ref(),
-        stribeck.as_ref(),
-        load.as_ref(),
-        known.as_ref(),
-    ];
-    word.value
-        .check(table, &[&of_one_axis[..], &[driven]].concat());
+    let said = [&spring, &stribeck, &load, &known].map(Option::as_ref);
+    word.value.check(said.into_iter().chain([driven]).flatten());
     table.finish();
     JointShape {
         name,
@@ -311,7 +301,7 @@ fn joint<'c, 't>(
         antecedent,
         steps,
         turned: false,
-        actuated: actuated && is_simple,
+        actuated: actuated && word.value.count() == 1,
         parameters,
         spring,
         known,

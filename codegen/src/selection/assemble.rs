@@ -89,9 +89,7 @@ impl Assembler<'_> {
             return Ok(forms);
         };
         start.is_worth = true;
-        // What legs block is told in the axes of their closures: error and derivative must have the same ones.
-        let is_of_axes = matches!(function, Function::BlockedError | Function::BlockedJacobian);
-        if is_of_axes || !self.search.is_thorough() {
+        if !self.search.is_thorough() {
             return Ok(forms);
         }
         let (least, mut best) = (start.operations, start.clone());

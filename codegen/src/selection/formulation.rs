@@ -193,12 +193,15 @@ fn choices(mechanism: &Mechanism, own: bool) -> Vec<Vec<Change>> {
     choices
 }
 
-/// The changes among which one is chosen after the other for a function on its own.
+/// The changes among which one is chosen after the other for a function on its own. What legs of a platform that moves
+/// aside block is told in their axes, as an error and as its derivative, and which leg is out of reach is told where
+/// its joints are needed: there only functions of all joints choose the axes of such legs.
 pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
     let has_forces = has_forces(function);
+    let own = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
     let has_motion = has_forces || function.columns().is_some();
     let mut all = vec![Change::Plain];
-    all.extend(choices(mechanism, true).into_iter().flatten());
+    all.extend(choices(mechanism, own).into_iter().flatten());
     all.retain(|change| has_motion || !matches!(change, Change::Weighted(_) | Change::OwnAxes(_)));
     if has_forces && mechanism.skeleton().is_some() {
         all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
@@ -228,6 +231,14 @@ pub fn formulations(
         }
     }
     all
+}
+
+/// Whether a function has columns of all bodies, and so needs the positions of all joints.
+const fn moves_all_legs(function: Function) -> bool {
+    matches!(
+        function,
+        Function::IdmRedPlatform(_) | Function::IdmRedActuators(_)
+    )
 }
 
 /// Whether a function adds up forces of given parameters.

@@ -171,47 +171,45 @@ impl Pass<'_> {
     /// Passes `N` vectors of signals, from number `column` on.
     #[inline(always)]
     fn columns<S: Simd, const N: usize>(&mut self, simd: S, column: usize) {
-        let even = self.sums::<S, N>(simd, column);
-        let odd = self.differences::<S, N>(simd, column);
+        let groups = self.groups;
+        let even = self.folded::<S, N>(
+            simd,
+            column,
+            &groups.even,
+            #[inline(always)]
+            |near, far| simd.add_f64s(near, far),
+        );
+        let odd = self.folded::<S, N>(
+            simd,
+            column,
+            &groups.odd,
+            #[inline(always)]
+            |near, far| simd.sub_f64s(near, far),
+        );
         for (place, (even, odd)) in even.iter().zip(&odd).enumerate() {
             self.put(simd, column + place * S::F64_LANES, (even, odd));
         }
     }
 
-    /// Sums of a sample and the one at the same place from the end, each by its weights.
+    /// What a sample and the one at the same place from the end come to, each by its weights. The sample in the middle
+    /// of an odd number stands for itself.
     #[inline(always)]
-    fn sums<S: Simd, const N: usize>(&self, simd: S, column: usize) -> [[S::f64s; PARTS]; N] {
-        let (groups, width) = (self.groups, self.width);
-        let last = groups.length - 1;
+    fn folded<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        column: usize,
+        all: &[[f64; PARTS]],
+        meet: impl Fn(S::f64s, S::f64s) -> S::f64s,
+    ) -> [[S::f64s; PARTS]; N] {
+        let (last, width) = (self.groups.length - 1, self.width);
         let mut sums = [[simd.splat_f64s(0.0); PARTS]; N];
-        for (k, weights) in groups.even.iter().enumerate() {
+        for (k, weights) in all.iter().enumerate() {
             let mut samples = vectors::<S, N>(self.rows, k * width + column);
             if 2 * k != last {
                 let far = vectors::<S, N>(self.rows, (last - k) * width + column);
                 for place in 0..N {
-                    samples[place] = simd.add_f64s(samples[place], far[place]);
+                    samples[place] = meet(samples[place], far[place]);
                 }
-            }
-            add::<S, N>(simd, &mut sums, &samples, weights);
-        }
-        sums
-    }
-
-    /// Differences of a sample and the one at the same place from the end, each by its weights.
-    #[inline(always)]
-    fn differences<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        column: usize,
-    ) -> [[S::f64s; PARTS]; N] {
-        let (groups, width) = (self.groups, self.width);
-        let last = groups.length - 1;
-        let mut sums = [[simd.splat_f64s(0.0); PARTS]; N];
-        for (k, weights) in groups.odd.iter().enumerate() {
-            let mut samples = vectors::<S, N>(self.rows, k * width + column);
-            let far = vectors::<S, N>(self.rows, (last - k) * width + column);
-            for place in 0..N {
-                samples[place] = simd.sub_f64s(samples[place], far[place]);
             }
             add::<S, N>(simd, &mut sums, &samples, weights);
         }

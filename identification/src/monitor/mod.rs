@@ -2,6 +2,7 @@
 //! right.
 //!
 //! - `watch`: stuck encoders, lost samples, a robot that stands still;
+//! - `position`: what is followed of an actuator's positions;
 //! - `marks`: samples by which a run is known again;
 //! - `peaks`: torques that are flat at their extremes;
 //! - `clipping`: what is told of them;
@@ -12,6 +13,7 @@
 mod clipping;
 mod marks;
 mod peaks;
+mod position;
 mod roughness;
 mod statistics;
 mod suspicion;

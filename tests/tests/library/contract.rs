@@ -381,6 +381,7 @@ impl Contract<'_> {
             }
             let far = actuators.iter().map(|q| q + 50.0).collect::<Vec<_>>();
             let _ = ask(&far, &home, "far actuators");
+            self.check_huge_actuators(actuators, &home);
             if self.has_quaternion {
                 let mut start = home.clone();
                 start[self.sizes.pose - 4..].fill(0.0);
@@ -395,6 +396,25 @@ impl Contract<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Where squares of what the actuators read overflow, no pose is found that is none.
+    fn check_huge_actuators(&self, actuators: &[f64], start: &[f64]) {
+        for (size, (name, model)) in [1e70, 1e120, 1e150]
+            .into_iter()
+            .flat_map(|size| self.backends.iter().map(move |backend| (size, backend)))
+        {
+            let signs = [-size, 0.0, size].into_iter().cycle();
+            let huge: Vec<f64> = actuators.iter().zip(signs).map(|(_, q)| q).collect();
+            let mut pose = start.to_vec();
+            if model.pose_from_actuators(&huge, &mut pose).is_ok() {
+                let stem = self.stem;
+                assert!(
+                    pose.iter().all(|number| number.is_finite()),
+                    "{stem}, {name}: {pose:?} of {huge:?}"
+                );
+            }
+        }
     }
 
     /// The answer of the first backend, which must be that of all.
