@@ -62,7 +62,8 @@ impl<'a> Companion<'a> {
         }
     }
 
-    /// The equations at the samples of some blocks, with the scales of the platform's coordinates. Without any where they can't be had, which is noted.
+    /// The equations at the samples of some blocks, with the scales of the platform's coordinates. Without any where
+    /// they can't be had, which is noted.
     pub(crate) fn chunks(
         &mut self,
         observer: &Observer<'_>,
