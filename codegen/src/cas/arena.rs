@@ -119,6 +119,18 @@ struct Tables {
     scope: u32,
 }
 
+impl Tables {
+    /// The constant of this value, or the reciprocal of one, if one is written anywhere.
+    fn known_constant(&self, value: Element) -> Option<Number> {
+        let of = |value| {
+            let ids = self.constant_ids.get(&value)?;
+            ids.first().map(|id| self.constants[*id as usize])
+        };
+        let either = |value: Element| of(value).or_else(|| of(-value).map(|number| -number));
+        either(value).or_else(|| either(value.inverse()).map(|number| Number::ONE / number))
+    }
+}
+
 /// An expression graph.
 #[derive(Debug)]
 pub struct Arena {
@@ -394,9 +406,9 @@ impl Arena {
         multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
     }
 
-    /// The node of which this one is a rational multiple.
+    /// The multiple of a node by a fraction or by a known constant that this one is.
     fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
-        let (other, ratio) = {
+        let (other, factor) = {
             let tables = self.tables.borrow();
             let other = *tables.by_ratio.get(&key)?;
             let theirs = tables.nodes[other as usize].fingerprint;
@@ -404,13 +416,16 @@ impl Arena {
             if ratio * theirs.image[1] != fingerprint.image[1] {
                 return None;
             }
-            let (n, d) = ratio.to_rational()?;
-            if !(theirs.sample * Sample::real(n as f64 / d as f64)).agrees(fingerprint.sample) {
+            let factor = match ratio.to_rational() {
+                Some((n, d)) => Number::ratio(Ratio::new(n.into(), d.into())?),
+                None => tables.known_constant(ratio)?,
+            };
+            if !(theirs.sample * Sample::real(factor.value())).agrees(fingerprint.sample) {
                 return None;
             }
-            (other, Number::ratio(Ratio::new(n.into(), d.into())?))
+            (other, factor)
         };
-        let factor = self.constant(ratio);
+        let factor = self.constant(factor);
         let product = Op::Mul(factor.positive(), Handle::new(other as usize, false));
         Some(self.intern(product).with_sign_of(factor.is_negative()))
     }

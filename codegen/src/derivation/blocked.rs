@@ -145,7 +145,22 @@ impl<'a> Robot<'a> {
             kind: GuardKind::Closed(overact_core::CLOSED * scale.max(1e-3)),
             leg: self.mechanism.legs[leg].name.clone(),
         };
+        let errors = errors.filter(|(value, _)| value.as_number().is_none());
         errors.map(guard).collect()
+    }
+
+    /// The conditions on which coordinates of the pose are zero, as those that legs allow are.
+    pub(super) fn still_guards(&self, still: &[usize]) -> Vec<Guard<'a>> {
+        let rows = self.aside.iter().flat_map(|aside| &aside.rows);
+        let leg = rows.map(|&(leg, _)| self.mechanism.legs[leg].name.clone());
+        let leg = leg.min().unwrap_or_default();
+        let scale = self.mechanism.length_scale().max(1e-3);
+        let guard = |&at: &usize| Guard {
+            value: self.arena.input("pose", at),
+            kind: GuardKind::Closed(overact_core::CLOSED * if at < 3 { scale } else { 1.0 }),
+            leg: leg.clone(),
+        };
+        still.iter().map(guard).collect()
     }
 
     /// The components of the platform's velocity, in the directions of its pose.

@@ -15,7 +15,7 @@ use crate::mechanism::Mechanism;
 pub(crate) fn derivable(mechanism: &Mechanism) -> Result<(), Underivable> {
     let arena = Arena::new();
     let plain = Formulation::default();
-    let robot = Robot::new(&arena, mechanism, MotionInput::Joints, &plain)?;
+    let robot = Robot::new(&arena, mechanism, MotionInput::Joints, &plain, &[])?;
     if !mechanism.is_tree() {
         robot.project_on_actuators(&mechanism.kept_actuators)?;
     }

@@ -202,7 +202,7 @@ impl<'a> Work<'a> {
     /// A point platform or a translation: X is the platform's origin.
     fn one_meeting(self) -> Option<ClosedForm<'a>> {
         let motion = self.mechanism.platform.as_ref()?.motion;
-        let platform = PlatformPose::new(self.arena, motion);
+        let platform = PlatformPose::new(self.arena, motion, &[]);
         let legs: Vec<usize> = (0..self.mechanism.legs.len()).collect();
         let spheres = self.spheres(&legs, |leg| {
             match self.mechanism.legs[leg].end.as_ref()? {

@@ -86,22 +86,29 @@ fn on_sheet<'a>(
     function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
-    let mut sheet = Sheet::new(arena, mechanism, selection, from)?;
+    // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
+    let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
+    let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
+    let still = match brings_back || closes {
+        true => &[][..],
+        false => &mechanism.still,
+    };
+    let mut sheet = Sheet::new(arena, mechanism, selection, from, still)?;
     let rows = sheet.rows(function)?;
     sheet.robot.give_names();
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();
     guards.extend(sheet.guards);
-    // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
     // Where Newton's method finds the joints, functions from the pose call those from the joints.
-    let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
-    let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
     let is_of_pose = match selection.joints {
         JointsBy::Newton => from != MotionInput::Actuators,
         JointsBy::Rule => from == MotionInput::Pose,
     };
     if is_of_pose && !brings_back && !closes {
         guards.extend(sheet.robot.closed_guards());
+    }
+    if from != MotionInput::Actuators {
+        guards.extend(sheet.robot.still_guards(still));
     }
     if brings_back {
         guards.retain(|guard| !matches!(guard.kind, GuardKind::Coordinates(_)));

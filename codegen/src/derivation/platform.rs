@@ -99,12 +99,15 @@ pub(super) fn on_twist<'a>(
 }
 
 impl<'a> PlatformPose<'a> {
-    /// The pose as inputs `pose[i]`.
+    /// The pose as inputs `pose[i]`, but for those that are known to be zero.
     #[must_use]
-    pub fn new(arena: &'a Arena, motion: Motion) -> Self {
+    pub fn new(arena: &'a Arena, motion: Motion, still: &[usize]) -> Self {
         let zero = arena.zero();
         let count = motion.pose_coordinates().len();
-        let input = |i: usize| arena.input("pose", i);
+        let input = |i: usize| match still.contains(&i) {
+            true => zero,
+            false => arena.input("pose", i),
+        };
         let mut origin = [zero; 3];
         for (i, coordinate) in motion.twist().iter().enumerate() {
             if let TwistCoordinate::Linear(axis) = coordinate {

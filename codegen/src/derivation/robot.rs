@@ -58,7 +58,7 @@ pub struct Robot<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// Derives configuration and closures.
+    /// Derives configuration and closures; `still` are coordinates of the pose that are known to be zero.
     ///
     /// # Errors
     /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
@@ -67,6 +67,7 @@ impl<'a> Robot<'a> {
         mechanism: &'a Mechanism,
         from: MotionInput,
         formulation: &Formulation,
+        still: &[usize],
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree is its joints, whatever it is called.
@@ -79,7 +80,7 @@ impl<'a> Robot<'a> {
             arena,
             mechanism,
             configuration: Configuration::new(arena, mechanism, from),
-            platform: motion.map(|m| PlatformPose::new(arena, m.of_pose())),
+            platform: motion.map(|m| PlatformPose::new(arena, m.of_pose(), still)),
             twist: motion
                 .map(crate::mechanism::Motion::twist)
                 .unwrap_or_default(),

@@ -23,7 +23,7 @@ pub(super) struct Sheet<'a, 's> {
 }
 
 impl<'a, 's> Sheet<'a, 's> {
-    /// A sheet with the configuration's inputs.
+    /// A sheet with the configuration's inputs; `still` are coordinates of the pose that are known to be zero.
     ///
     /// # Errors
     /// See [`Robot::new`].
@@ -32,12 +32,19 @@ impl<'a, 's> Sheet<'a, 's> {
         mechanism: &'a Mechanism,
         selection: &'s Selection,
         from: MotionInput,
+        still: &[usize],
     ) -> Result<Self, Underivable> {
         let configuration = match (from, selection.joints) {
             (MotionInput::Pose | MotionInput::Actuators, JointsBy::Rule) => MotionInput::Pose,
             _ => MotionInput::Joints,
         };
-        let robot = Robot::new(arena, mechanism, configuration, &selection.formulation)?;
+        let robot = Robot::new(
+            arena,
+            mechanism,
+            configuration,
+            &selection.formulation,
+            still,
+        )?;
         Ok(Self {
             inputs: configuration_inputs(&robot, configuration),
             robot,

@@ -4,7 +4,7 @@ use super::actuation::{rates_per_velocity, shared_velocities};
 use super::explain;
 use super::home::{Home, approach};
 use super::mobility::Mobility;
-use super::parasitic::{Parasitic, closed, rated};
+use super::parasitic::{Parasitic, closed, rated, still_coordinates};
 use super::states::random_states;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
@@ -60,6 +60,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     errors.into_result(())?;
     keep_actuators(description, &mut mechanism)?;
     check_held(description, &mechanism)?;
+    mechanism.still = still_coordinates(&mechanism);
     Ok(mechanism)
 }
 
@@ -137,6 +138,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         // Chosen when the home configuration is known, if the description leaves it open.
         base_columns: base_columns(description),
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
+        still: Vec::new(),
     }
 }
 
