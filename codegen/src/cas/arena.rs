@@ -120,14 +120,23 @@ struct Tables {
 }
 
 impl Tables {
-    /// The constant of this value, or the reciprocal of one, if one is written anywhere.
-    fn known_constant(&self, value: Element) -> Option<Number> {
-        let of = |value| {
-            let ids = self.constant_ids.get(&value)?;
-            ids.first().map(|id| self.constants[*id as usize])
-        };
-        let either = |value: Element| of(value).or_else(|| of(-value).map(|number| -number));
-        either(value).or_else(|| either(value.inverse()).map(|number| Number::ONE / number))
+    /// The constant of this value, if it is a fraction of a constant that is written anywhere, or of the reciprocal
+    /// of one: of √3/2, for instance, 2/√3, 1/√3 and √3.
+    fn fraction_of_constant(&self, value: Element) -> Option<Number> {
+        /// Larger numerators and denominators might be found by chance.
+        const LARGEST: i64 = 1 << 20;
+        let irrational = self.constants.iter().filter(|own| own.as_ratio().is_none());
+        irrational.copied().find_map(|own| {
+            let inverse = own.image().inverse();
+            [(inverse, own), (own.image(), Number::ONE / own)]
+                .into_iter()
+                .find_map(|(image, number)| {
+                    let (n, d) = (value * image).to_rational()?;
+                    let is_small = n.abs() < LARGEST && d < LARGEST;
+                    is_small.then_some(())?;
+                    Some(Number::ratio(Ratio::new(n.into(), d.into())?) * number)
+                })
+        })
     }
 }
 
@@ -418,7 +427,7 @@ impl Arena {
             }
             let factor = match ratio.to_rational() {
                 Some((n, d)) => Number::ratio(Ratio::new(n.into(), d.into())?),
-                None => tables.known_constant(ratio)?,
+                None => tables.fraction_of_constant(ratio)?,
             };
             if !(theirs.sample * Sample::real(factor.value())).agrees(fingerprint.sample) {
                 return None;

@@ -114,7 +114,7 @@ impl<'a> Robot<'a> {
             })
             .collect();
         let own = apply(&aside.follow, acceleration);
-        let bias = apply(&aside.inverse, &missing);
+        let bias = aside.solved.solve(&missing);
         let others: Vec<Expr<'a>> = own.iter().zip(&bias).map(|(a, b)| *a + *b).collect();
         (velocity, aside.together(acceleration, &others))
     }

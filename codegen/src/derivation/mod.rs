@@ -25,6 +25,7 @@ mod closed_forms;
 mod closure;
 mod composite;
 mod configuration;
+mod constant_columns;
 mod derivable;
 mod divisors;
 mod dynamics;

@@ -5,8 +5,9 @@
 //! where D is the identity on the independent coordinates and -A_d⁻¹ A_i on the others; what is derived per
 //! component of t, rows of reduced Jacobians and forces, goes to v by D.
 
-use super::elimination::{Inverse, Rows, inverse};
-use super::linear::{apply, product};
+use super::constant_columns::Solved;
+use super::elimination::Rows;
+use super::linear::{apply, transposed};
 use crate::cas::{Arena, Expr, Vector3};
 
 /// Components of a free body's velocity.
@@ -23,8 +24,8 @@ pub struct Aside<'a> {
     pub(super) rows: Vec<(usize, usize)>,
     /// A, per component of t.
     pub(super) matrix: Rows<'a>,
-    /// A_d⁻¹.
-    pub(super) inverse: Rows<'a>,
+    /// A_d.
+    pub(super) solved: Solved<'a>,
     /// -A_d⁻¹ A_i.
     pub(super) follow: Rows<'a>,
 }
@@ -47,24 +48,22 @@ impl<'a> Aside<'a> {
             matrix.iter().map(row).collect()
         };
         let (own, others) = (part(&independent), part(&dependent));
-        let Inverse {
-            rows: inverse,
-            determinants,
-            ..
-        } = inverse(&others, home)?;
-        let follow: Rows<'a> = product(&inverse, &own)
-            .into_iter()
-            .map(|row| row.into_iter().map(|entry| -entry).collect())
-            .collect();
-        let solved = Self {
+        let solved = Solved::new(&others, home)?;
+        let determinants = solved.determinants.clone();
+        let column = |column: &Vec<Expr<'a>>| -> Vec<Expr<'a>> {
+            let found = solved.solve(column).into_iter();
+            found.map(|entry| -entry).collect()
+        };
+        let follow = transposed(&transposed(&own).iter().map(column).collect());
+        let aside = Self {
             independent,
             dependent,
             rows,
             matrix,
-            inverse,
+            solved,
             follow,
         };
-        Some((solved, determinants))
+        Some((aside, determinants))
     }
 
     /// t of the independent velocities.

@@ -76,6 +76,10 @@ impl<'a> Robot<'a> {
         } else {
             from
         };
+        // Functions scale the quaternion of a pose to length one.
+        if motion.is_some_and(crate::mechanism::Motion::has_quaternion) {
+            arena.unit_quaternion("pose", mechanism.pose_len() - 4, still);
+        }
         let mut robot = Self {
             arena,
             mechanism,

@@ -140,6 +140,34 @@ impl Arena {
         tables.stands.insert((-number).image(), (symbol, true));
     }
 
+    /// Lets four elements of an input array be a quaternion of length one, some of which are zero: its points of the
+    /// field lie on the sphere, at (1 - u², 2 u) / (1 + u²) for free u, so that the identities of rotations are found.
+    /// None of its elements may be in use.
+    pub(crate) fn unit_quaternion(&self, array: &'static str, first: usize, zero: &[usize]) {
+        let symbols: [SymbolId; 4] = std::array::from_fn(|k| self.input_symbol(array, first + k));
+        let mut tables = self.tables.borrow_mut();
+        let number = |value| Fingerprint::number(Number::integer(value));
+        let mut free = symbols.map(|symbol| tables.symbols[symbol.0 as usize].fingerprint);
+        let is_zero = |k: &usize| zero.contains(&(first + k));
+        (0..4).filter(is_zero).for_each(|k| free[k] = number(0));
+        // One that is not zero is at the pole.
+        let Some(pole) = (0..4).find(|k| !is_zero(k)) else {
+            return;
+        };
+        let others = (0..4).filter(|&k| k != pole);
+        let square = others.fold(number(0), |sum, k| sum + free[k] * free[k]);
+        let sum = number(1) + square;
+        for (k, symbol) in symbols.into_iter().enumerate() {
+            let part = match k == pole {
+                true => number(1) + -square,
+                false => free[k] + free[k],
+            };
+            let own = &mut tables.symbols[symbol.0 as usize];
+            own.fingerprint = part.over(sum);
+            own.sample = own.fingerprint.sample.re();
+        }
+    }
+
     /// The value of the constant that a symbol stands for, if it stands for one.
     pub(crate) fn constant_of(&self, symbol: SymbolId) -> Option<f64> {
         let tables = self.tables.borrow();
