@@ -1,6 +1,7 @@
 //! The graph: nodes, their fingerprints in the field, and the tables that share them.
 
 mod fingerprint;
+mod multiples;
 mod placeholders;
 mod symbols;
 
@@ -117,27 +118,8 @@ struct Tables {
     never_zero: BTreeSet<usize>,
     scopes: Vec<String>,
     scope: u32,
-}
-
-impl Tables {
-    /// The constant of this value, if it is a fraction of a constant that is written anywhere, or of the reciprocal
-    /// of one: of √3/2, for instance, 2/√3, 1/√3 and √3.
-    fn fraction_of_constant(&self, value: Element) -> Option<Number> {
-        /// Larger numerators and denominators might be found by chance.
-        const LARGEST: i64 = 1 << 20;
-        let irrational = self.constants.iter().filter(|own| own.as_ratio().is_none());
-        irrational.copied().find_map(|own| {
-            let inverse = own.image().inverse();
-            [(inverse, own), (own.image(), Number::ONE / own)]
-                .into_iter()
-                .find_map(|(image, number)| {
-                    let (n, d) = (value * image).to_rational()?;
-                    let is_small = n.abs() < LARGEST && d < LARGEST;
-                    is_small.then_some(())?;
-                    Some(Number::ratio(Ratio::new(n.into(), d.into())?) * number)
-                })
-        })
-    }
+    /// Whether multiples of nodes by irrational constants are looked for.
+    finds_irrational: bool,
 }
 
 /// An expression graph.
@@ -395,50 +377,6 @@ impl Arena {
             .then_some(found)
     }
 
-    /// The rational multiple of a node that this one is, or else a node of its own.
-    fn multiple_or_new(&self, op: Op, fingerprint: Fingerprint) -> Handle {
-        let scaled = match op {
-            Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
-            Op::Constant(_) => true,
-            _ => false,
-        };
-        let key = if scaled {
-            None
-        } else {
-            ratio_key(&fingerprint)
-        };
-        let multiple = match op {
-            Op::Symbol(_) => None,
-            _ => key.and_then(|key| self.proportional(key, &fingerprint)),
-        };
-        let multiple = multiple.filter(|h| self.fits(&op, *h));
-        multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
-    }
-
-    /// The multiple of a node by a fraction or by a known constant that this one is.
-    fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
-        let (other, factor) = {
-            let tables = self.tables.borrow();
-            let other = *tables.by_ratio.get(&key)?;
-            let theirs = tables.nodes[other as usize].fingerprint;
-            let ratio = fingerprint.image[0] * theirs.image[0].inverse();
-            if ratio * theirs.image[1] != fingerprint.image[1] {
-                return None;
-            }
-            let factor = match ratio.to_rational() {
-                Some((n, d)) => Number::ratio(Ratio::new(n.into(), d.into())?),
-                None => tables.fraction_of_constant(ratio)?,
-            };
-            if !(theirs.sample * Sample::real(factor.value())).agrees(fingerprint.sample) {
-                return None;
-            }
-            (other, factor)
-        };
-        let factor = self.constant(factor);
-        let product = Op::Mul(factor.positive(), Handle::new(other as usize, false));
-        Some(self.intern(product).with_sign_of(factor.is_negative()))
-    }
-
     /// Whether a node that means the same may stand for an operation.
     fn fits(&self, op: &Op, handle: Handle) -> bool {
         let mut tables = self.tables.borrow_mut();
@@ -490,10 +428,4 @@ pub fn negative_name(name: &str) -> String {
         Some(positive) => positive.to_owned(),
         None => format!("minus_{name}"),
     }
-}
-
-/// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
-fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
-    (fingerprint.image[1] != Element::ZERO)
-        .then(|| fingerprint.image[0] * fingerprint.image[1].inverse())
 }

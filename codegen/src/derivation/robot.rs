@@ -76,8 +76,10 @@ impl<'a> Robot<'a> {
         } else {
             from
         };
-        // Functions scale the quaternion of a pose to length one.
-        if motion.is_some_and(crate::mechanism::Motion::has_quaternion) {
+        // Functions scale the quaternion of a pose to length one, and legs at angles have determinants that are
+        // multiples of lengths. Where the platform may have any orientation, knowing this finds no fewer operations.
+        if mechanism.is_parasitic() {
+            arena.find_irrational_multiples();
             arena.unit_quaternion("pose", mechanism.pose_len() - 4, still);
         }
         let mut robot = Self {

@@ -269,6 +269,8 @@ impl<'a> Task<'a> {
             let (of_random, start) = best.ok_or_else(|| self.no_motion(robot))?;
             let evolved = search.evolved(&series, start, &told, &mut random, &tell);
             let settled = search.settled(&series, &evolved);
+            // A series may keep the limits at the samples and no scaled one between them: then another one does.
+            let settled = settled.or_else(|| search.settled_random(&series, &told, &mut random));
             let found: Candidate = settled.ok_or_else(|| self.no_motion(robot))?;
             let both = chains.hundred.iter().zip(&all);
             chains.hundred = match index {

@@ -282,6 +282,25 @@ impl<'a> Search<'a> {
         None
     }
 
+    /// The best of some random series, as [`settled`](Self::settled), that can be; the time is not looked at, for
+    /// there is nothing yet.
+    pub(super) fn settled_random(
+        &self,
+        series: &Series<'_>,
+        before: &[DMatrix<f64>],
+        random: &mut Pcg64,
+    ) -> Option<Candidate> {
+        let unhurried = Self {
+            deadlines: None,
+            ..*self
+        };
+        let mut all = unhurried.random(series, random);
+        let score = |own: &Candidate| self.question.score(&added(before, &own.information));
+        all.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        all.iter()
+            .find_map(|one| unhurried.settled(series, &one.trajectory))
+    }
+
     /// The candidate that tells most beside what the runs before it tell.
     pub(super) fn best<'c>(
         &self,

@@ -205,3 +205,25 @@ impl Arena {
         self.value_of(self.symbol_of_kind(name, Kind::Placeholder))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The entries of a quaternion have squares of sum one, and with one that is zero so have the others.
+    #[test]
+    fn the_squares_of_a_unit_quaternion_are_one_together() {
+        for zero in [&[][..], &[6], &[3, 5]] {
+            let arena = Arena::new();
+            arena.unit_quaternion("pose", 3, zero);
+            let entry = |k: usize| match zero.contains(&k) {
+                true => arena.zero(),
+                false => arena.input("pose", k),
+            };
+            let sum: Expr<'_> = (3..7).map(|k| entry(k) * entry(k)).sum();
+            assert!(sum.is_one(), "{zero:?}");
+            let less: Expr<'_> = (3..6).map(|k| entry(k) * entry(k)).sum();
+            assert_eq!(less.is_one(), zero == [6], "{zero:?}");
+        }
+    }
+}

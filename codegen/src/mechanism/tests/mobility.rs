@@ -139,6 +139,23 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
     assert!(!said(&tilted).contains("mark more joints"));
 }
 
+/// Three legs at equal angles keep the platform from turning about z, wherever else they let it go: the last component
+/// of its quaternion stays zero. At other angles it turns.
+#[test]
+fn coordinates_that_closures_keep_at_zero_are_found() {
+    let still = |angles: &[i32]| {
+        let motion = "spatial\"\nindependent = [\"z\", \"rx\", \"ry\"]\nsource = \"";
+        let text = rps(motion, angles).replace("source = \"\"\n", "");
+        let source = Source::new("rps.toml", text);
+        let description = description::parse(&source).expect("a description");
+        crate::mechanism::check(&description)
+            .expect("a robot")
+            .still
+    };
+    assert_eq!(still(&[0, 120, 240]), [6]);
+    assert!(still(&[0, 100, 240]).is_empty());
+}
+
 /// The ball of each leg stays in the vertical plane of the leg's slide, n · (p + R a) = 0: three equations in the
 /// pose alone, and their derivatives n · v + (R a × n) · ω = 0, which owe nothing to the legs' joints.
 #[test]

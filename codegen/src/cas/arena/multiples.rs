@@ -1,0 +1,116 @@
+//! Nodes that are multiples of other nodes.
+
+use super::super::field::Element;
+use super::super::number::Number;
+use super::super::ratio::Ratio;
+use super::super::sample::Sample;
+use super::{Arena, Fingerprint, Handle, Op, Tables};
+
+impl Arena {
+    /// From now on, a node that is another one times a fraction of a known irrational constant is that one, scaled;
+    /// with fractions alone it always is.
+    pub(crate) fn find_irrational_multiples(&self) {
+        self.tables.borrow_mut().finds_irrational = true;
+    }
+
+    /// The rational multiple of a node that this one is, or else a node of its own.
+    pub(super) fn multiple_or_new(&self, op: Op, fingerprint: Fingerprint) -> Handle {
+        let scaled = match op {
+            Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
+            Op::Constant(_) => true,
+            _ => false,
+        };
+        let key = if scaled {
+            None
+        } else {
+            ratio_key(&fingerprint)
+        };
+        let multiple = match op {
+            Op::Symbol(_) => None,
+            _ => key.and_then(|key| self.proportional(key, &fingerprint)),
+        };
+        let multiple = multiple.filter(|h| self.fits(&op, *h));
+        multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
+    }
+
+    /// The multiple of a node by a fraction or by a known constant that this one is.
+    fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
+        let (other, factor) = {
+            let tables = self.tables.borrow();
+            let other = *tables.by_ratio.get(&key)?;
+            let theirs = tables.nodes[other as usize].fingerprint;
+            let ratio = fingerprint.image[0] * theirs.image[0].inverse();
+            if ratio * theirs.image[1] != fingerprint.image[1] {
+                return None;
+            }
+            let factor = match ratio.to_rational() {
+                Some((n, d)) => Number::ratio(Ratio::new(n.into(), d.into())?),
+                None if tables.finds_irrational => tables.fraction_of_constant(ratio)?,
+                None => return None,
+            };
+            if !(theirs.sample * Sample::real(factor.value())).agrees(fingerprint.sample) {
+                return None;
+            }
+            (other, factor)
+        };
+        let factor = self.constant(factor);
+        let product = Op::Mul(factor.positive(), Handle::new(other as usize, false));
+        Some(self.intern(product).with_sign_of(factor.is_negative()))
+    }
+}
+
+impl Tables {
+    /// The constant of this value, if it is a fraction of a constant that is written anywhere, or of the reciprocal
+    /// of one: of √3/2, for instance, 2/√3, 1/√3 and √3.
+    fn fraction_of_constant(&self, value: Element) -> Option<Number> {
+        /// Larger numerators and denominators might be found by chance.
+        const LARGEST: i64 = 1 << 20;
+        let irrational = self.constants.iter().filter(|own| own.as_ratio().is_none());
+        irrational.copied().find_map(|own| {
+            let inverse = own.image().inverse();
+            [(inverse, own), (own.image(), Number::ONE / own)]
+                .into_iter()
+                .find_map(|(image, number)| {
+                    let (n, d) = (value * image).to_rational()?;
+                    let is_small = n.abs() < LARGEST && d < LARGEST;
+                    is_small.then_some(())?;
+                    Some(Number::ratio(Ratio::new(n.into(), d.into())?) * number)
+                })
+        })
+    }
+}
+
+/// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
+fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
+    (fingerprint.image[1] != Element::ZERO)
+        .then(|| fingerprint.image[0] * fingerprint.image[1].inverse())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::angle::Angle;
+    use super::*;
+    use crate::cas::Direction;
+
+    /// c (√3/2 c q) + s (√3/2 s q) is √3/2 q once multiples of constants are looked for.
+    #[test]
+    fn a_determinant_of_a_leg_at_an_angle_is_a_multiple_of_its_length() {
+        let sixty = Direction::constant(Angle::half_turns(Ratio::new(1, 3).unwrap_or(Ratio::ONE)));
+        let by_length = |finds: bool| {
+            let arena = Arena::new();
+            if finds {
+                arena.find_irrational_multiples();
+            }
+            let q = arena.input("joints", 0);
+            let (c, s) = arena.cosine_and_sine(&arena.input_angle("joints", 1));
+            let (_, root) = arena.cosine_and_sine(&sixty);
+            let determinant = c * (root * (c * q)) + s * (root * (s * q));
+            let (factor, base) = determinant.factor_and_base();
+            (factor.value(), base == q)
+        };
+        let (factor, is_length) = by_length(true);
+        assert!(is_length);
+        assert!((factor - 0.75_f64.sqrt()).abs() < 1e-15, "{factor}");
+        assert!(!by_length(false).1);
+    }
+}
