@@ -14,7 +14,7 @@ use crate::{
     options::Options,
     par,
     plan::Plan,
-    urdf, writing, xml,
+    sdf, urdf, writing, xml,
 };
 use std::path::{Path, PathBuf};
 
@@ -59,6 +59,8 @@ pub enum Format {
     Urdf,
     /// That of OpenSYMORO.
     Par,
+    /// That of Gazebo.
+    Sdf,
 }
 
 /// The robot of a file with all choices of the user, and the file's format; `None` after an error.
@@ -123,16 +125,21 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
     {
         return par::read(files, file, options).map(|model| (model, Format::Par));
     }
-    let root = xml::parse(files, file, &["visual", "collision", "asset", "geom"])?;
+    let root = xml::parse(
+        files,
+        file,
+        &["visual", "collision", "asset", "geom", "sensor"],
+    )?;
     match root.name.as_str() {
         "mujoco" => mjcf::read(files, file, options).map(|model| (model, Format::Mjcf)),
         "robot" => urdf::read(files, file, options).map(|model| (model, Format::Urdf)),
+        "sdf" | "gazebo" => sdf::read(files, file, options).map(|model| (model, Format::Sdf)),
         other => {
-            let message = format!("a file of <{other}> is neither MJCF nor URDF");
+            let message = format!("a file of <{other}> is neither MJCF nor URDF nor SDFormat");
             files.report(
                 &root.place,
                 message,
-                "MJCF begins with <mujoco>, URDF with <robot>",
+                "MJCF begins with <mujoco>, URDF with <robot>, SDFormat with <sdf>",
             );
             None
         }

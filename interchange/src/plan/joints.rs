@@ -49,7 +49,8 @@ impl<'d, 'm> Draft<'d, 'm> {
         let axis = self.network.axis(edge, home);
         let sign = if edge.groups[0] == from { 1.0 } else { -1.0 };
         let position = match edge.origin {
-            Origin::Joint(joint) => home.positions[joint],
+            // The variable of a joint that follows has no constant: it stands in the joint's expression.
+            Origin::Joint(joint) => home.positions[joint] - self.constant(joint),
             Origin::Closure(_) => 0.0,
         };
         let name = self.network.edge_name(edge).to_owned();
@@ -87,6 +88,12 @@ impl<'d, 'm> Draft<'d, 'm> {
             let group = (at + 1 == axes.len()).then_some(to);
             self.finish(index, at, group, &format!("{name}_{}", at + 1));
         }
+    }
+
+    /// What the position of a joint that follows another has besides the other's.
+    fn constant(&self, joint: usize) -> f64 {
+        let follow = self.network.model.joints[joint].follow;
+        follow.map_or(0.0, |follow| follow.offset)
     }
 
     fn finish(&mut self, edge: usize, axis: usize, group: Option<usize>, name: &str) {
@@ -150,6 +157,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             last = Some(at);
         }
         self.add_bodies(framed, &mut all);
+        super::screws::join(self.network.model, &mut all);
         all
     }
 
@@ -164,6 +172,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             } else {
                 "revolute"
             },
+            pitch: None,
             antecedent,
             step,
             follows: None,
@@ -233,7 +242,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             symbols.push("off");
         }
         if let Some((stiffness, rest)) = own.spring.filter(|_| !has_loops) {
-            joint.spring = Some(rest);
+            joint.spring = Some(rest - self.constant(at));
             joint.values.push(("k", stiffness));
         }
         if let Some(follow) = own.follow {
@@ -251,7 +260,12 @@ impl<'d, 'm> Draft<'d, 'm> {
             }
             let leader = leader.map_or("", |at| self.names[at].as_str());
             let factor = crate::geometry::digits::decimal(follow.factor);
-            joint.follows = Some(format!("{factor} * q_{leader}"));
+            let unit = match (own.kind, self.network.model.joints[follow.joint].kind) {
+                (Kind::Prismatic, Kind::Revolute) => " m/rad",
+                (Kind::Revolute, Kind::Prismatic) => " rad/m",
+                _ => "",
+            };
+            joint.follows = Some(format!("{factor}{unit} * q_{leader}"));
         }
         if !own.drive.is_empty() {
             joint.comment.push(own.drive.clone());
@@ -314,6 +328,7 @@ fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<Stri
     Joint {
         name,
         kind: "fixed",
+        pitch: None,
         antecedent,
         step,
         follows: None,
