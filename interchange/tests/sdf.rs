@@ -230,143 +230,137 @@ fn said_with(text: &str, options: &Options) -> String {
     all
 }
 
+fn all_are_said(cases: &[(String, &str)]) {
+    for (text, expected) in cases {
+        let found = said(text);
+        assert!(found.starts_with(expected), "{text}\n{found}");
+    }
+}
+
+fn joint(kind: &str, inside: &str) -> String {
+    one_joint(kind, inside, "")
+}
+
 #[test]
-fn what_can_not_be_said_is_refused_at_its_line() {
-    let joint = |kind: &str, inside: &str| one_joint(kind, inside, "");
-    let more = |more: &str| one_joint("revolute", Z, more);
-    let cases = [
+fn axes_that_can_not_be_said_are_refused_at_their_line() {
+    let parallel = format!("{Z}<axis2><xyz>0 0 -1</xyz></axis2>");
+    let still = format!("{Z}\n<screw_thread_pitch>0</screw_thread_pitch>");
+    let turn = |xyz: &str| joint("revolute", &format!("<axis>\n{xyz}</axis>"));
+    all_are_said(&[
         (
             joint("plane", Z),
-            "5: the joint `j` is `plane`, which can't be said",
+            "5: the joint `j` is `plane`, which can't",
         ),
         (joint("revolute", ""), "5: the joint `j` has no <axis>"),
+        (turn("<xyz>0 0 0</xyz>"), "7: the axis has no direction"),
+        (turn("<xyz>0 nan 1</xyz>"), "7: <xyz> has to be 3 finite"),
         (
-            joint("revolute", "<axis>\n<xyz>0 0 0</xyz></axis>"),
-            "7: the axis has no direction",
-        ),
-        (
-            joint("revolute", "<axis>\n<xyz>0 nan 1</xyz></axis>"),
-            "7: <xyz> has to be 3 finite numbers",
-        ),
-        (
-            joint(
-                "revolute",
-                "<axis>\n<xyz expressed_in='b'>0 0 1</xyz></axis>",
-            ),
-            "7: there is no link, joint, frame or model `b`",
+            turn("<xyz expressed_in='b'>0 0 1</xyz>"),
+            "7: there is no link",
         ),
         (joint("universal", Z), "5: the joint `j` has no <axis2>"),
         (
-            joint("universal", &format!("{Z}<axis2><xyz>0 0 -1</xyz></axis2>")),
-            "5: the two axes of the joint `j` are parallel",
+            joint("universal", &parallel),
+            "5: the two axes of the joint",
         ),
         (joint("screw", Z), "5: the screw `j` has no pitch"),
         (
-            joint(
-                "screw",
-                &format!("{Z}\n<screw_thread_pitch>0</screw_thread_pitch>"),
-            ),
-            "7: the pitch of the screw `j` moves nothing",
+            joint("screw", &still),
+            "7: the pitch of the screw `j` moves",
         ),
         (
             joint("gearbox", Z),
             "3: no joint leads from the world to `a`",
         ),
         (joint("fixed", ""), "0: the robot has no joint that moves"),
+    ]);
+}
+
+#[test]
+fn ends_that_can_not_be_said_are_refused_at_their_line() {
+    let fixed = |old: &str, new: &str| joint("fixed", Z).replace(old, new);
+    let more = |more: &str| one_joint("revolute", Z, more);
+    all_are_said(&[
         (
-            joint("fixed", Z).replace(">a<", ">world<"),
-            "6: the child of the joint `j` is the world",
+            fixed(">a<", ">world<"),
+            "6: the child of the joint `j` is the",
         ),
+        (fixed(">world<", ">a<"), "5: the joint `j` joins a body to"),
         (
-            joint("fixed", Z).replace(">world<", ">a<"),
-            "5: the joint `j` joins a body to itself",
-        ),
-        (
-            joint("fixed", Z).replace(">world<", ">aa<"),
+            fixed(">world<", ">aa<"),
             "6: there is no link, joint, frame or model `aa` (did you mean `a`?)",
         ),
         (
-            joint("fixed", Z).replace("<parent>world</parent>", ""),
+            fixed("<parent>world</parent>", ""),
             "5: the joint `j` has no <parent>",
         ),
         (
             more("<link name='b'/>"),
-            "7: no joint leads from the world to `b`: it floats",
+            "7: no joint leads from the world to `b`",
         ),
         (more("<link name='a'/>"), "7: two things are called `a`"),
-        (
-            more("<link name='world'/>"),
-            "7: `world` can't be the name of a link",
-        ),
+        (more("<link name='world'/>"), "7: `world` can't be the name"),
         (more("<static>true</static>"), "2: the model `m` is static"),
-        (
-            more("<include>\n<uri>model://arm</uri></include>"),
-            "8: `model://arm` is not read",
-        ),
-        (
-            more("<include>\n<uri>../arm.sdf</uri></include>"),
-            "8: `../arm.sdf` is not read",
-        ),
-        (
-            more("<include>\n<uri>robot.sdf</uri></include>"),
-            "8: `robot.sdf` includes itself",
-        ),
+    ]);
+}
+
+#[test]
+fn frames_and_files_that_can_not_be_said_are_refused_at_their_line() {
+    let more = |more: &str| one_joint("revolute", Z, more);
+    let uri = |uri: &str| more(&format!("<include>\n<uri>{uri}</uri></include>"));
+    let pose = |pose: &str| more(&format!("<frame name='f'>\n<pose {pose}</pose></frame>"));
+    let pair = "<frame name='f' attached_to='g'/>\n<frame name='g' attached_to='f'/>";
+    let circle = "7: the pose of `f` is told in frames that go in a circle";
+    all_are_said(&[
+        (uri("model://arm"), "8: `model://arm` is not read"),
+        (uri("../arm.sdf"), "8: `../arm.sdf` is not read"),
+        (uri("robot.sdf"), "8: `robot.sdf` includes itself"),
         (more("<include/>"), "7: <include> names no file"),
+        (more(pair), circle),
+        (pose("relative_to='f'>"), circle),
+        (pose(">0 0 0 0 0"), "8: <pose> has to be 6 finite numbers"),
         (
-            more("<frame name='f' attached_to='g'/>\n<frame name='g' attached_to='f'/>"),
-            "7: the pose of `f` is told in frames that go in a circle",
+            pose(">0 1e20 0 0 0 0"),
+            "8: <pose> has a number beyond 1e15",
         ),
         (
-            more("<frame name='f'>\n<pose relative_to='f'/></frame>"),
-            "7: the pose of `f` is told in frames that go in a circle",
-        ),
-        (
-            more("<frame name='f'>\n<pose>0 0 0 0 0</pose></frame>"),
-            "8: <pose> has to be 6 finite numbers",
-        ),
-        (
-            more(
-                "<frame name='f'>\n<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 0</pose></frame>",
-            ),
+            pose("rotation_format='quat_xyzw'>0 0 0 0 0 0 0"),
             "8: a quaternion of length zero",
         ),
+    ]);
+}
+
+#[test]
+fn documents_that_can_not_be_read_are_refused_at_their_line() {
+    let robot = joint("revolute", Z);
+    let mass = |mass: &str| {
+        let inertial = format!("<inertial>\n<mass>{mass}</mass></inertial><pose>");
+        robot.replace("<pose>", &inertial)
+    };
+    let two = "<sdf version='1.9'>\n<model name='a'/><model name='b'/></sdf>";
+    let entity = "<!DOCTYPE sdf [<!ENTITY a 'b'>]>\n<sdf version='1.9'>&a;</sdf>";
+    all_are_said(&[
+        (mass("-1"), "4: a mass is negative"),
+        (mass("inf"), "5: <mass> has to be 1 finite numbers"),
         (
-            joint("revolute", Z).replace("<pose>", "<inertial>\n<mass>-1</mass></inertial><pose>"),
-            "4: a mass is negative",
+            robot.replace("'1.11'", "'1.2'"),
+            "1: SDFormat of version `1.2`",
         ),
         (
-            joint("revolute", Z).replace("<pose>", "<inertial>\n<mass>inf</mass></inertial><pose>"),
-            "5: <mass> has to be 1 finite numbers",
-        ),
-        (
-            joint("revolute", Z).replace("'1.11'", "'1.2'"),
-            "1: SDFormat of version `1.2` is not read",
-        ),
-        (
-            joint("revolute", Z).replace(" version='1.11'", ""),
+            robot.replace(" version='1.11'", ""),
             "1: the file does not say its version",
         ),
-        (
-            "<sdf version='1.9'/>".to_owned(),
-            "1: there is no <model> that moves",
-        ),
+        ("<sdf version='1.9'/>".to_owned(), "1: there is no <model>"),
         (
             "<sdf version='1.9'>\n<model>".to_owned(),
             "2: this is no XML",
         ),
+        (entity.to_owned(), "1: this is no XML"),
         (
-            "<!DOCTYPE sdf [<!ENTITY a 'b'>]>\n<sdf version='1.9'>&a;</sdf>".to_owned(),
-            "1: this is no XML",
-        ),
-        (
-            "<sdf version='1.9'>\n<model name='a'/><model name='b'/></sdf>".to_owned(),
+            two.to_owned(),
             "1: there are 2 models: `a`, `b` (say which is the robot: `--model a`)",
         ),
-    ];
-    for (text, expected) in cases {
-        let found = said(&text);
-        assert!(found.starts_with(expected), "{text}\n{found}");
-    }
+    ]);
 }
 
 #[test]
@@ -450,7 +444,9 @@ fn slips_are_no_panics() {
         fs::write(&path, text).expect("a file");
         refused += usize::from(import(&path, &driven(&["left_motor", "right_motor"])).is_err());
     };
-    let ends = (0..text.len()).step_by(211).filter(|&at| text.is_char_boundary(at));
+    let ends = (0..text.len())
+        .step_by(211)
+        .filter(|&at| text.is_char_boundary(at));
     for at in ends {
         try_it(&text[..at]);
     }
@@ -465,10 +461,24 @@ fn slips_are_no_panics() {
         }
     }
     assert!(places.len() > 60);
-    let others = ["nan", "1e300", "-1", "", "0 0 0", "world", "left_rod", "tip", "\u{e9}&#10;x"];
+    let others = [
+        "nan",
+        "1e300",
+        "-1",
+        "",
+        "0 0 0",
+        "world",
+        "left_rod",
+        "tip",
+        "\u{e9}&#10;x",
+    ];
     for (at, place) in places.iter().enumerate() {
         let other = others[at % others.len()];
-        try_it(&format!("{}{other}{}", &text[..place.start], &text[place.end..]));
+        try_it(&format!(
+            "{}{other}{}",
+            &text[..place.start],
+            &text[place.end..]
+        ));
     }
     assert!(refused > 50, "{refused}");
 }
