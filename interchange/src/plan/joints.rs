@@ -58,6 +58,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             self.nodes.push(Node {
                 antecedent,
                 is_prismatic: edge.kind == Kind::Prismatic,
+                is_screw: self.is_screw(edge),
                 point: axis.point,
                 direction: axis.direction * sign,
                 home: position,
@@ -80,6 +81,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             let node = Node {
                 antecedent,
                 is_prismatic: false,
+                is_screw: false,
                 point: axis.point,
                 direction: *direction,
                 home: 0.0,
@@ -88,6 +90,16 @@ impl<'d, 'm> Draft<'d, 'm> {
             let group = (at + 1 == axes.len()).then_some(to);
             self.finish(index, at, group, &format!("{name}_{}", at + 1));
         }
+    }
+
+    /// Whether an edge slides as another turns.
+    fn is_screw(&self, edge: &Edge) -> bool {
+        let Origin::Joint(joint) = edge.origin else {
+            return false;
+        };
+        let joints = &self.network.model.joints;
+        let leader = joints[joint].follow.map(|follow| joints[follow.joint].kind);
+        edge.kind == Kind::Prismatic && leader == Some(Kind::Revolute)
     }
 
     /// What the position of a joint that follows another has besides the other's.
@@ -259,7 +271,7 @@ impl<'d, 'm> Draft<'d, 'm> {
                 self.files.report(&own.place, message, help);
             }
             let leader = leader.map_or("", |at| self.names[at].as_str());
-            let factor = crate::geometry::digits::decimal(follow.factor);
+            let factor = crate::geometry::digits::fine(follow.factor, follow.factor);
             let unit = match (own.kind, self.network.model.joints[follow.joint].kind) {
                 (Kind::Prismatic, Kind::Revolute) => " m/rad",
                 (Kind::Revolute, Kind::Prismatic) => " rad/m",
