@@ -148,3 +148,115 @@ fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
         assert!((6.0..12.0).contains(&degrees), "{run}: {degrees}");
     }
 }
+
+/// The torques of an imported robot at states, by the inputs of its inverse dynamics; the masses are the file's.
+fn torques(name: &str, text: &str, options: &[&str], inputs: [&str; 3]) -> Vec<f64> {
+    let (bench, toml) = imported(name, text, options);
+    let (_, values) = toml.split_once("[experiment.parameters]").expect("values");
+    let (values, _) = values.split_once("[prior").unwrap_or((values, ""));
+    bench.write("values.toml", &format!("[parameters]{values}"));
+    let count = match inputs[0] {
+        "pose" => 2,
+        _ => 4,
+    };
+    let numbers = |state: usize, input: usize| -> Vec<f64> {
+        let number = |at: usize| (1.7 * (state * 7 + input * 3 + at) as f64).sin() * 0.3;
+        (0..count).map(number).collect()
+    };
+    let state = |state: usize| {
+        let own = inputs.iter().enumerate();
+        let pairs = own.map(|(at, name)| ((*name).to_owned(), numbers(state, at).into()));
+        serde_json::Value::Object(pairs.collect())
+    };
+    let states: Vec<serde_json::Value> = (0..5).map(state).collect();
+    bench.write("states.json", &serde_json::Value::from(states).to_string());
+    let asked = [
+        "evaluate",
+        "my.toml",
+        "inverse_dynamics",
+        "--states",
+        "states.json",
+    ];
+    let document = bench.json(&[&asked[..], &["--parameters", "values.toml"]].concat());
+    let mut all = Vec::new();
+    for result in document["results"].as_array().expect("results") {
+        let (_, values) = result
+            .as_object()
+            .and_then(|o| o.iter().next())
+            .expect("values");
+        all.extend(
+            values
+                .as_array()
+                .expect("numbers")
+                .iter()
+                .map(common::number),
+        );
+    }
+    all
+}
+
+fn are_same(a: &[f64], b: &[f64]) {
+    assert_eq!(a.len(), b.len());
+    let largest = a.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+    assert!(largest > 0.1, "{a:?}");
+    for (a, b) in a.iter().zip(b) {
+        assert!((a - b).abs() < 1e-9 * largest, "{a} {b}");
+    }
+}
+
+#[test]
+fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
+    let inputs = ["joints", "joint_velocities", "joint_accelerations"];
+    let urdf = torques("arm.urdf", &model("arm.urdf"), &[], inputs);
+    let sdf = model("arm.sdf");
+    are_same(&urdf, &torques("arm.sdf", &sdf, &[], inputs));
+    // A slide's axis may stand anywhere: other frames, the same robot.
+    let slide = "<joint name=\"reach\" type=\"prismatic\">";
+    assert!(sdf.contains(slide));
+    let elsewhere = sdf.replace(slide, &format!("{slide}<pose relative_to=\"__model__\"/>"));
+    are_same(&urdf, &torques("arm.sdf", &elsewhere, &[], inputs));
+}
+
+/// The five-bar of `five_bar.sdf`, cut at its tip.
+fn cut_five_bar() -> String {
+    let link = |name: &str, mass: f64, [xx, yy]: [f64; 2]| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='{mass}'/>\
+             <inertia ixx='{xx}' ixy='0' ixz='0' iyy='{yy}' iyz='0' izz='{yy}'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, ends: [&str; 2], at: &str, pitch: &str, more: &str| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent link='{}'/><child link='{}'/><axis xyz='0 1 0'/>\
+             <origin xyz='{at}' rpy='0 {pitch} 0'/>{more}</joint>",
+            ends[0], ends[1]
+        )
+    };
+    let friction = |v: &str| format!("<dynamics damping='{v}' friction='0.1'/>");
+    let (right, third) = ("-1.5707963267948966", "0.5235987755982988");
+    [
+        "<robot name='five_bar'><link name='base'/>".to_owned(),
+        link("left_crank", 0.5, [0.0001, 0.002]),
+        link("right_crank", 0.6, [0.0001, 0.002]),
+        link("left_rod", 0.3, [0.00005, 0.001]),
+        link("right_rod", 0.35, [0.00005, 0.001]),
+        joint("left_motor", ["base", "left_crank"], "-0.1 0 0", right, &friction("0.2")),
+        joint("right_motor", ["base", "right_crank"], "0.1 0 0", right, &friction("0.3")),
+        joint("left_elbow", ["left_crank", "left_rod"], "0.2 0 0", third, ""),
+        joint("right_elbow", ["right_crank", "right_rod"], "0.2 0 0", &format!("-{third}"), ""),
+        "<loop name='tip' type='revolute'><predecessor link='left_rod'><origin xyz='0.2 0 0'/></predecessor>\
+         <successor link='right_rod'><origin xyz='0.2 0 0'/></successor><axis xyz='0 1 0'/></loop></robot>"
+            .to_owned(),
+    ]
+    .concat()
+}
+
+#[test]
+fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
+    let motors = "left_motor,right_motor";
+    let options = ["--actuated", motors, "--coordinates", motors];
+    let inputs = ["pose", "twist", "acceleration"];
+    let urdf = torques("five_bar.urdf", &cut_five_bar(), &options, inputs);
+    let sdf = torques("five_bar.sdf", &model("five_bar.sdf"), &options, inputs);
+    are_same(&urdf, &sdf);
+}

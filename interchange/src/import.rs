@@ -14,7 +14,7 @@ use crate::{
     options::Options,
     par,
     plan::Plan,
-    urdf, writing, xml,
+    sdf, urdf, writing, xml,
 };
 use std::path::{Path, PathBuf};
 
@@ -59,6 +59,8 @@ pub enum Format {
     Urdf,
     /// That of OpenSYMORO.
     Par,
+    /// That of Gazebo.
+    Sdf,
 }
 
 /// The robot of a file with all choices of the user, and the file's format; `None` after an error.
@@ -73,6 +75,7 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
     if !model.closures.is_empty() {
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
     }
+    no_balls_in_trees(files, &model)?;
     plain_balls(&mut model);
     no_springs_in_loops(&mut model);
     Some((model, format))
@@ -123,16 +126,21 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
     {
         return par::read(files, file, options).map(|model| (model, Format::Par));
     }
-    let root = xml::parse(files, file, &["visual", "collision", "asset", "geom"])?;
+    let root = xml::parse(
+        files,
+        file,
+        &["visual", "collision", "asset", "geom", "sensor"],
+    )?;
     match root.name.as_str() {
         "mujoco" => mjcf::read(files, file, options).map(|model| (model, Format::Mjcf)),
         "robot" => urdf::read(files, file, options).map(|model| (model, Format::Urdf)),
+        "sdf" | "gazebo" => sdf::read(files, file, options).map(|model| (model, Format::Sdf)),
         other => {
-            let message = format!("a file of <{other}> is neither MJCF nor URDF");
+            let message = format!("a file of <{other}> is neither MJCF nor URDF nor SDFormat");
             files.report(
                 &root.place,
                 message,
-                "MJCF begins with <mujoco>, URDF with <robot>",
+                "MJCF begins with <mujoco>, URDF with <robot>, SDFormat with <sdf>",
             );
             None
         }
@@ -258,6 +266,25 @@ fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
     );
     let help = "name all driven joints, `--actuated JOINT,JOINT`, or hold still in the file what does not move";
     files.refuse(message, help);
+    None
+}
+
+/// Without loops every joint has a motor in a description, and a ball has none.
+fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
+    if !model.closures.is_empty() {
+        return Some(());
+    }
+    let mut balls = model.joints.iter();
+    let ball = balls.find(|joint| joint.kind == crate::model::Kind::Ball);
+    let Some(ball) = ball else {
+        return Some(());
+    };
+    let message = format!(
+        "the ball `{}` has no motor, which can't be said without loops",
+        ball.name
+    );
+    let help = "write it as three revolute joints";
+    files.report(&ball.place, message, help);
     None
 }
 

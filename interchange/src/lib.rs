@@ -3,7 +3,7 @@
 //!
 //! | stage | from | to |
 //! |---|---|---|
-//! | `mjcf`, `urdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
+//! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
 //! | `experiment` | the closed robot | motions inside the limits of its joints |
@@ -22,6 +22,7 @@ mod model;
 mod options;
 mod par;
 mod plan;
+mod sdf;
 mod urdf;
 mod writing;
 mod xml;

@@ -5,6 +5,8 @@
 pub struct Options {
     /// Name of the robot; that of the file's model where there is none.
     pub name: Option<String>,
+    /// The model that is meant, where a world has several.
+    pub model: Option<String>,
     /// Whether a base that floats is fixed where it stands.
     pub fix_base: bool,
     /// The driven joints, in the place of those that the file names.

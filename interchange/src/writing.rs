@@ -66,6 +66,9 @@ fn given(options: &Options) -> Option<String> {
     if options.fix_base {
         words.push("--fix-base".to_owned());
     }
+    if let Some(model) = &options.model {
+        words.push(format!("--model {model}"));
+    }
     for (key, names) in [
         ("--actuated", &options.actuated),
         ("--coordinates", &options.coordinates),
@@ -147,6 +150,9 @@ fn joint(text: &mut String, leg: &str, joint: &Joint) {
     if let Some(antecedent) = &joint.antecedent {
         let _ = writeln!(text, "antecedent = \"{antecedent}\"");
     }
+    if let Some(pitch) = joint.pitch {
+        let _ = writeln!(text, "pitch = {}", decimal(pitch));
+    }
     let step = &joint.step;
     let mut angle_key = |key: &str, value: f64| {
         if !is_zero(value) {
@@ -163,10 +169,9 @@ fn joint(text: &mut String, leg: &str, joint: &Joint) {
     variable(text, joint, "theta", "revolute", step.theta, angle);
     variable(text, joint, "r", "prismatic", step.r, decimal);
     if let Some(rest) = joint.spring {
-        let rest = if joint.kind == "revolute" {
-            angle(rest)
-        } else {
-            decimal(rest)
+        let rest = match joint.kind {
+            "prismatic" => decimal(rest),
+            _ => angle(rest),
         };
         let _ = writeln!(text, "spring = \"q - ({rest})\"");
     }
@@ -188,7 +193,8 @@ fn variable(
     constant: f64,
     show: fn(f64) -> String,
 ) {
-    if joint.kind != of {
+    let is_own = joint.kind == of || (joint.kind == "helical" && of == "revolute");
+    if !is_own {
         if !is_zero(constant) {
             let shown = show(constant);
             let shown = if shown.ends_with("deg") {

@@ -17,6 +17,8 @@ pub(crate) struct Element {
     pub(crate) attributes: Vec<(String, String, Place)>,
     /// The elements in it.
     pub(crate) children: Vec<Element>,
+    /// The text in it without blanks around, and its place; that of the element where there is none.
+    pub(crate) text: (String, Place),
     /// Where it begins.
     pub(crate) place: Place,
 }
@@ -90,15 +92,50 @@ pub(crate) fn element(
     let children = children.map(|child| element(child, file, skip, depth + 1));
     let start = node.range().start;
     let name = node.tag_name().name().to_owned();
+    let place = Place {
+        file,
+        span: start..start + 1 + name.len(),
+    };
     Some(Element {
         attributes: attributes.collect(),
         children: children.collect::<Option<Vec<_>>>()?,
-        place: Place {
-            file,
-            span: start..start + 1 + name.len(),
-        },
+        text: text(node, &place),
+        place,
         name,
     })
+}
+
+/// The text of a node between its elements and comments.
+fn text(node: roxmltree::Node<'_, '_>, place: &Place) -> (String, Place) {
+    let mut all = String::new();
+    let mut span: Option<std::ops::Range<usize>> = None;
+    for part in node.children().filter(roxmltree::Node::is_text) {
+        let own = part.text().unwrap_or_default();
+        let inside = own.trim();
+        if inside.is_empty() {
+            continue;
+        }
+        let range = part.range();
+        // Where characters are written by their numbers, the text is as long as it is written only on the whole.
+        let before = own.len() - own.trim_start().len();
+        let (start, end) = match own.len() == range.len() {
+            true => (range.start + before, range.start + before + inside.len()),
+            false => (range.start, range.end),
+        };
+        span = Some(span.map_or(start..end, |span| span.start..end));
+        if !all.is_empty() {
+            all.push(' ');
+        }
+        all.push_str(inside);
+    }
+    let place = span.map_or_else(
+        || place.clone(),
+        |span| Place {
+            file: place.file,
+            span,
+        },
+    );
+    (all, place)
 }
 
 impl Element {
@@ -164,7 +201,8 @@ impl Element {
     }
 }
 
-fn numbers(text: &str) -> Option<Vec<f64>> {
+/// Numbers with blanks or commas between them; none where one of them is no finite number.
+pub(crate) fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text
         .split([' ', '\t', '\n', '\r', ','])
         .filter(|word| !word.is_empty());

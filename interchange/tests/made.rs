@@ -139,3 +139,46 @@ fn every_robot_has_runs_inside_the_limits_of_its_joints() {
         assert!((0.02..=0.1001).contains(&largest), "{largest}");
     }
 }
+
+#[test]
+fn a_joint_that_follows_keeps_its_constant() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = |offset: &str| {
+        let link = |name: &str| {
+            format!(
+                "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>"
+            )
+        };
+        let body = format!(
+            "<robot name='r'><link name='o'/>{}{}<joint name='j' type='revolute'><parent link='o'/><child link='a'/>\
+             <axis xyz='0 0 1'/></joint><joint name='k' type='revolute'><origin xyz='1 0 0'/><parent link='a'/>\
+             <child link='b'/><axis xyz='0 0 1'/><mimic joint='j' multiplier='0.5'{offset}/></joint></robot>",
+            link("a"),
+            link("b")
+        );
+        let path = folder.path().join("follow.urdf");
+        std::fs::write(&path, body).expect("a file");
+        import(&path, &Options::default()).expect("a robot").text
+    };
+    // The centre of the mass is 0.1 m along x of a body that is turned by 0.3 rad where the leader is at zero.
+    let told = text(" offset='0.3'");
+    assert!(told.contains("theta = \"0.5 * q_j\""), "{told}");
+    let value = |name: &str| {
+        let line = told
+            .lines()
+            .find_map(|line| line.strip_prefix(name))
+            .expect(name);
+        line.trim_start_matches(" = ")
+            .parse::<f64>()
+            .expect("a number")
+    };
+    assert!(
+        (value("mx_k") - 0.1 * 0.3_f64.cos()).abs() < 1e-15,
+        "{told}"
+    );
+    assert!(
+        (value("my_k") - 0.1 * 0.3_f64.sin()).abs() < 1e-15,
+        "{told}"
+    );
+    assert!(text("").contains("mx_k = 0.1\n"));
+}

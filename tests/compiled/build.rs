@@ -1,5 +1,5 @@
 //! Generates what the tests need compiled and `generated/` does not keep as text: the other robots of
-//! `robots/`, robots with every kind of friction, the DualV in each of its four partitions, and the RX90 with
+//! `robots/`, robots with every kind of friction and with screws, the DualV in each of its four partitions, and the RX90 with
 //! known parameters, the way a user's build script does.
 //!
 //! The default tier searches operations quickly, the full tier thoroughly, as the manifest of
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     println!("cargo::rerun-if-changed=friction");
-    for stem in ["friction_arm", "friction_bar"] {
+    for stem in ["friction_arm", "friction_bar", "screw_arm"] {
         let text = fs::read_to_string(format!("friction/{stem}.toml"))?;
         write(stem, stem, &text, effort)?;
     }

@@ -4,7 +4,7 @@
 use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::derivation::BodyParameter;
 use overact_codegen::{Effort, Request, RobotModel, Source};
-use overact_compiled::friction::{ARM, BAR, FrictionArm, FrictionBar};
+use overact_compiled::friction::{ARM, BAR, FrictionArm, FrictionBar, SCREW, ScrewArm};
 use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
@@ -63,6 +63,11 @@ fn an_arm_with_a_follower_and_a_coupled_motor() -> Result<(), Failure> {
 #[test]
 fn a_five_bar_with_passive_joints() -> Result<(), Failure> {
     compare(BAR, &FrictionBar)
+}
+
+#[test]
+fn an_arm_with_screws() -> Result<(), Failure> {
+    compare(SCREW, &ScrewArm)
 }
 
 /// At rest friction is the mean of both directions, as an offset is, and no division fails.

@@ -159,6 +159,7 @@ const HOUSES: [House; 7] = [
             "urdf",
             "mjcf",
             "par",
+            "sdf",
             "experiment",
             "writing",
             "import",

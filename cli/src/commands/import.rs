@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// The robot: MJCF, URDF or .par
+    /// The robot: MJCF, URDF, SDFormat or .par
     #[arg(value_name = "FILE")]
     pub(super) file: PathBuf,
     /// The description to write instead of stdout
@@ -32,6 +32,9 @@ pub(super) struct Choices {
     /// Fix a base that floats where it stands
     #[arg(long)]
     fix_base: bool,
+    /// The model that is meant, of an SDFormat world with several
+    #[arg(long, value_name = "NAME")]
+    model: Option<String>,
     /// The driven joints [default: those that the file names]
     #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
     actuated: Option<Vec<String>>,
@@ -51,6 +54,7 @@ impl Choices {
     pub(super) fn options(&self) -> Options {
         Options {
             name: None,
+            model: self.model.clone(),
             fix_base: self.fix_base,
             actuated: self.actuated.clone(),
             coordinates: self.coordinates.clone(),

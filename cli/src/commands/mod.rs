@@ -70,7 +70,7 @@ pub(crate) enum Command {
     Completions(shell::Completions),
     /// Print or write pages for `man`
     Manual(shell::Manual),
-    /// Make a description of a robot's MJCF, URDF or .par, with loops
+    /// Make a description of a robot's MJCF, URDF, SDFormat or .par, with loops
     Import(import::Arguments),
     /// Put identified parameters back into the MJCF or URDF that a description was made of
     Export(export::Arguments),

@@ -13,6 +13,7 @@ use super::spring;
 use super::value::Value;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::{Code, Diagnostic};
+use std::f64::consts::TAU;
 
 /// Joint variables with their factors.
 type Combination = Vec<(usize, Ratio)>;
@@ -92,6 +93,11 @@ impl Reader<'_, '_, '_> {
                 let offset = offset.to_angle().unwrap_or(Angle::ZERO);
                 (self.spanned(theta, offset), length(r), variable)
             }
+            JointKind::Prismatic if joint.pitch.is_some() => {
+                let variable = lead(joint.pitch.as_ref(), &scope);
+                let turn = variable.map_or_else(Vec::new, |lead| vec![(self.index + 1, lead)]);
+                (angle(theta), length(r), turn)
+            }
             JointKind::Prismatic => {
                 let (offset, variable) = self.position(r, Dimension::LENGTH, &scope);
                 (angle(theta), self.spanned(r, offset.to_number()), variable)
@@ -156,7 +162,10 @@ impl Reader<'_, '_, '_> {
     }
 
     fn angle(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Angle> {
-        let value = item.and_then(|item| item.angle(scope));
+        let value = item.and_then(|item| {
+            let value = self.constant(item, Dimension::ANGLE, scope)?;
+            item.to_angle(&value)
+        });
         if let (Some(item), Some(value)) = (item, &value) {
             doubt::angle(item, value.value);
         }
@@ -164,11 +173,34 @@ impl Reader<'_, '_, '_> {
     }
 
     fn length(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Number> {
-        let value = item.and_then(|item| item.number(Dimension::LENGTH, scope));
+        let value = item.and_then(|item| {
+            let value = self.constant(item, Dimension::LENGTH, scope)?;
+            Some(Spanned::new(value.scalar.to_number(), item.span.clone()))
+        });
         if let (Some(item), Some(value)) = (item, &value) {
             doubt::length(item, value.value);
         }
         value.unwrap_or_else(|| self.spanned(item, Number::ZERO))
+    }
+
+    /// A value that holds no joint variable; an error says where one may stand. `q` counts as one even in a joint
+    /// that has none.
+    fn constant(&self, item: &Item<'_, '_>, dimension: Dimension, scope: &Scope) -> Option<Value> {
+        let mut scope = scope.clone();
+        scope.add("q".to_owned(), Some(Value::variable(self.index, dimension)));
+        let value = item.evaluate(&scope)?;
+        if !value.terms.is_empty() {
+            let message = format!(
+                "`{}` is constant and cannot hold a joint variable",
+                item.key.value
+            );
+            let help = self.joint.word.variables(&self.joint.called);
+            let error = item.error(Code::JOINT_POSITION, message).help(help);
+            item.context.report_once(error);
+            return None;
+        }
+        item.check_dimension(&value, dimension)?;
+        Some(value)
     }
 
     /// The constant and the variable part of θ (revolute) or r (prismatic). One that is missing, or
@@ -225,6 +257,32 @@ impl Reader<'_, '_, '_> {
         }
         None
     }
+}
+
+/// What the slide of a helical joint goes along for each radian of its turn: from a length for a turn, or one for a
+/// radian where the unit says so. `None` after an error.
+fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
+    let item = item?;
+    let value = item.evaluate(&scope.without_variables())?;
+    let per_radian = Dimension::ANGLE
+        .power(-1)
+        .and_then(|per_radian| Dimension::LENGTH.times(per_radian));
+    let lead = match per_radian {
+        Some(dimension) if value.dimension == dimension => value.scalar.to_ratio(),
+        _ => {
+            item.check_dimension(&value, Dimension::LENGTH)?;
+            doubt::length(item, value.scalar.to_number());
+            Scalar::Number(Number::float(value.scalar.value() / TAU)).to_ratio()
+        }
+    };
+    if lead.is_none_or(Ratio::is_zero) {
+        let message = "a pitch has to move something, by less than 1e6 m";
+        let help = "give what the joint goes along for a turn, for instance \"5 mm\"; negative of a left-hand thread";
+        item.context
+            .report_once(item.error(Code::OUT_OF_RANGE, message).help(help));
+        return None;
+    }
+    lead
 }
 
 /// Writes the variables of dependent joints as combinations of independent ones.

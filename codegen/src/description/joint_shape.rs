@@ -2,6 +2,7 @@
 
 use super::model::{JointKind, Spanned};
 use super::reader::Item;
+use super::word::Word;
 use crate::diagnostic::Span;
 use overact_core::StandardParameter;
 
@@ -20,6 +21,11 @@ pub(super) struct JointShape<'c, 't> {
     pub(super) known: Option<Item<'c, 't>>,
     pub(super) stribeck: Option<Item<'c, 't>>,
     pub(super) load: Option<Item<'c, 't>>,
+    /// Of the slide of a helical joint, which follows the turn behind it, what it goes along for a turn.
+    pub(super) pitch: Option<Item<'c, 't>>,
+    /// The word of the table that it is an axis of, and the name of the table's joint.
+    pub(super) word: Word,
+    pub(super) called: String,
     pub(super) span: Span,
 }
 

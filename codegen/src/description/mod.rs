@@ -52,6 +52,7 @@ mod tests;
 mod token;
 mod transmission;
 mod value;
+mod word;
 
 pub use actuator_names::ActuatorNames;
 pub use controller::Controller;

@@ -64,6 +64,11 @@ impl Scalar {
         }
     }
 
+    /// The scalar as a fraction; one that is none becomes the fraction which its float is. `None` on overflow.
+    pub(super) fn to_ratio(self) -> Option<Ratio> {
+        self.as_ratio().or_else(|| ratio_of_float(self.value()))
+    }
+
     pub(super) fn value(self) -> f64 {
         match self {
             Self::Number(number) => number.value(),

@@ -1,6 +1,6 @@
 //! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
 
-use super::compound::{WORDS, Word};
+use super::compound::split;
 use super::doubt;
 use super::joint_shape::{JointShape, STEPS};
 use super::model::{JointKind, Spanned};
@@ -8,6 +8,7 @@ use super::motor::{self, MotorShape};
 use super::parameters::Owner;
 use super::reader::{Item, Table};
 use super::scope::{Scope, is_word, name_problem};
+use super::word::{WORDS, Word};
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use overact_core::StandardParameter;
 
@@ -142,17 +143,19 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
         .zip(&firsts)
         .flat_map(|((((table, name), antecedent), word), first)| {
             let antecedent = antecedent.and_then(|antecedent| last(antecedent.value));
-            word.value
-                .split(joint(table, name, antecedent, word), *first)
+            split(word.value, joint(table, name, antecedent, word), *first)
         });
     let joints: Vec<JointShape<'c, 't>> = joints.collect();
     check_names(item, &joints);
     joints
 }
 
+/// What a pitch is, for whoever gave none.
+const PITCH: &str = "pitch = \"5 mm\" goes along z by 5 mm for each turn about it, \"0.8 mm/rad\" by 0.8 mm for each radian";
+
 /// The word for a table's joint; a turn, where there is none that is known.
 fn word(table: &Table<'_, '_>) -> Spanned<Word> {
-    let help = "type = \"revolute\", \"prismatic\" or \"fixed\", or a joint of several axes: \"cylindrical\", \"universal\", \"spherical\", \"planar\"";
+    let help = "type = \"revolute\", \"prismatic\" or \"fixed\", or a joint of several axes: \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\"";
     let word = table
         .require("type", help)
         .and_then(|item| item.choice(&WORDS));
@@ -266,6 +269,7 @@ fn joint<'c, 't>(
     word: &Spanned<Word>,
 ) -> JointShape<'c, 't> {
     let kind = Spanned::new(word.value.first(), word.span.clone());
+    let called = name.value.clone();
     let steps = STEPS.map(|key| table.get(key));
     let actuated_item = table.get("actuated");
     let actuated = actuated_item
@@ -292,6 +296,7 @@ fn joint<'c, 't>(
     let load = table.get("friction_load");
     parameters.extend(load.as_ref().map(|_| StandardParameter::Fl));
     let known = table.get("known");
+    let pitch = pitch(table, word.value);
     let said = [&spring, &stribeck, &load, &known].map(Option::as_ref);
     word.value.check(said.into_iter().chain([driven]).flatten());
     table.finish();
@@ -301,14 +306,30 @@ fn joint<'c, 't>(
         antecedent,
         steps,
         turned: false,
-        actuated: actuated && word.value.count() == 1,
+        actuated: actuated && (word.value.count() == 1 || word.value == Word::Helical),
         parameters,
         spring,
         known,
         stribeck,
         load,
+        pitch,
+        word: word.value,
+        called,
         span: table.span.clone(),
     }
+}
+
+/// The pitch of a helical joint; an error where it is absent, or said of another joint.
+fn pitch<'c, 't>(table: &Table<'c, 't>, word: Word) -> Option<Item<'c, 't>> {
+    if word == Word::Helical {
+        return table.require("pitch", PITCH);
+    }
+    let item = table.get("pitch")?;
+    let message = "`pitch` is said of a helical joint";
+    let help = "use type = \"helical\", or leave it out";
+    let error = item.error(Code::CONTRADICTION, message).help(help);
+    table.context.report(error);
+    None
 }
 
 fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {

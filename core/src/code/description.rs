@@ -77,6 +77,6 @@ super::codes! {
         cause "[identification.known] or [prior] names a parameter that the robot does not have, gives an impossible value, or leaves gains without anything to relate to."
         cure "Take names of parameters that `overact inspect` lists, positive masses and friction, and give at least one parameter that was weighed or measured where gains are identified."
     FOREIGN 126 "a robot's file of another format that can't be made a description"
-        cause "A file of MJCF or URDF, or one that it names, can't be read, is no such file, or says something for which a description has no words: a closure, joint or actuator that the message names."
-        cure "The message names the element and its line; take it out or say it in another way, choose with --actuated, --coordinates or --home where a choice failed. docs/import.md maps what becomes what."
+        cause "A file of MJCF, URDF, SDFormat or .par, or one that it names, can't be read, is no such file, or says something for which a description has no words: a closure, joint or actuator that the message names."
+        cure "The message names the element and its line; take it out or say it in another way, choose with --actuated, --coordinates, --home or --model where a choice failed. docs/import.md maps what becomes what."
 }

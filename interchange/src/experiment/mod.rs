@@ -165,7 +165,7 @@ fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
                 0 => joint.name.clone(),
                 _ => format!("{}.{}", leg.name, joint.name),
             };
-            (name, joint.kind == "revolute")
+            (name, joint.kind != "prismatic")
         });
         named.collect::<Vec<_>>()
     };

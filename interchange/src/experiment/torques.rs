@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
 /// inertias leave an acceleration free.
 pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) -> Option<Vec<f64>> {
     let model = guide.network.model;
+    if guide.actuators.is_empty() {
+        return Some(Vec::new());
+    }
     let mut sums = vec![0.0; guide.actuators.len()];
     for stop in &course.stops {
         let (mass, weight) = reduced(guide, stop);

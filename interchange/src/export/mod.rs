@@ -59,9 +59,14 @@ pub fn export(path: &Path, parameters: &Path, options: &Options) -> Result<Expor
 
 fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) -> Option<Exported> {
     let (model, format) = import::model(files, path, options)?;
-    if format == Format::Par {
-        let help = "parameters have the names of the description: write them in the place of the file's symbols";
-        files.refuse("parameters are not put back into .par files", help);
+    let other = match format {
+        Format::Mjcf | Format::Urdf => None,
+        Format::Par => Some(".par files"),
+        Format::Sdf => Some("SDFormat"),
+    };
+    if let Some(other) = other {
+        let help = "parameters have the names of the description: write them in the place of what the file says";
+        files.refuse(format!("parameters are not put back into {other}"), help);
         return None;
     }
     let robot = Robot::new(files, &model, options)?;
@@ -238,7 +243,7 @@ impl Export<'_, '_> {
             let attribute = match self.format {
                 Format::Mjcf => mjcf::attribute(symbol),
                 Format::Urdf => urdf::attribute(symbol),
-                Format::Par => None,
+                Format::Par | Format::Sdf => None,
             };
             let (Some(value), Some(attribute)) = (self.values.get(&name), attribute) else {
                 continue;
@@ -275,6 +280,7 @@ impl Export<'_, '_> {
             Format::Mjcf => "MJCF",
             Format::Urdf => "URDF",
             Format::Par => ".par",
+            Format::Sdf => "SDFormat",
         };
         (!left.is_empty())
             .then(|| format!("{format} has no place for {}: left out.", left.join(", ")))
@@ -301,7 +307,7 @@ impl Export<'_, '_> {
                     Format::Urdf => {
                         urdf::inertia(&mut patch, self.files, &text, node, inertia, file)
                     }
-                    Format::Par => {}
+                    Format::Par | Format::Sdf => {}
                 }
             }
             for ((_, start), values) in self.wanted.joints.iter().filter(|((of, _), _)| *of == file)
@@ -310,7 +316,7 @@ impl Export<'_, '_> {
                 match self.format {
                     Format::Mjcf => mjcf::joint(&mut patch, node, values),
                     Format::Urdf => urdf::joint(&mut patch, &text, node, values),
-                    Format::Par => {}
+                    Format::Par | Format::Sdf => {}
                 }
             }
             if !patch.is_empty() {

@@ -11,6 +11,8 @@ pub(crate) struct Node {
     /// The joint before it; none on the base.
     pub(crate) antecedent: Option<usize>,
     pub(crate) is_prismatic: bool,
+    /// Whether it slides as another joint turns, and stands on its axis.
+    pub(crate) is_screw: bool,
     pub(crate) point: Point3<f64>,
     pub(crate) direction: Vector3<f64>,
     /// Its position at home, of which its constants are free.
@@ -183,8 +185,9 @@ fn placed(node: &Node, before: &Pose, next: &Next) -> Pose {
 fn incoming(node: &Node, before: &Pose) -> (Point3<f64>, Vector3<f64>) {
     let (z, start) = (node.direction, Point3::from(before.translation.vector));
     let [x_before, z_before] = [Vector3::x(), Vector3::z()].map(|e| before.rotation * e);
-    // A slide may stand anywhere along its way.
-    let point = if node.is_prismatic { start } else { node.point };
+    // A slide may stand anywhere along its way, but for that of a screw.
+    let may_stand = node.is_prismatic && !node.is_screw;
+    let point = if may_stand { start } else { node.point };
     let across = |v: Vector3<f64>| (v - z * z.dot(&v)).try_normalize(1e-9);
     let normal = z_before.cross(&z);
     if normal.norm() < PARALLEL.max(NEARLY) {

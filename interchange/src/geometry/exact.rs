@@ -60,6 +60,20 @@ pub(crate) fn turn(axis: &Vector3<f64>, value: f64) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(matrix)
 }
 
+/// The direction of an axis, of length 1 and without what rounding left in it; `None` for one of no length.
+#[must_use]
+pub(crate) fn direction(xyz: [f64; 3]) -> Option<Vector3<f64>> {
+    let clean = |v: f64| {
+        if (v - v.round()).abs() < TOLERANCE {
+            v.round()
+        } else {
+            v
+        }
+    };
+    let found = Vector3::from(xyz).try_normalize(1e-9)?;
+    Some(found.map(clean).normalize())
+}
+
 /// The rotation of URDF's roll, pitch and yaw.
 #[must_use]
 pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Rotation3<f64> {

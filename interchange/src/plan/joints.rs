@@ -49,7 +49,8 @@ impl<'d, 'm> Draft<'d, 'm> {
         let axis = self.network.axis(edge, home);
         let sign = if edge.groups[0] == from { 1.0 } else { -1.0 };
         let position = match edge.origin {
-            Origin::Joint(joint) => home.positions[joint],
+            // The variable of a joint that follows has no constant: it stands in the joint's expression.
+            Origin::Joint(joint) => home.positions[joint] - self.constant(joint),
             Origin::Closure(_) => 0.0,
         };
         let name = self.network.edge_name(edge).to_owned();
@@ -57,6 +58,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             self.nodes.push(Node {
                 antecedent,
                 is_prismatic: edge.kind == Kind::Prismatic,
+                is_screw: self.is_screw(edge),
                 point: axis.point,
                 direction: axis.direction * sign,
                 home: position,
@@ -79,6 +81,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             let node = Node {
                 antecedent,
                 is_prismatic: false,
+                is_screw: false,
                 point: axis.point,
                 direction: *direction,
                 home: 0.0,
@@ -87,6 +90,22 @@ impl<'d, 'm> Draft<'d, 'm> {
             let group = (at + 1 == axes.len()).then_some(to);
             self.finish(index, at, group, &format!("{name}_{}", at + 1));
         }
+    }
+
+    /// Whether an edge slides as another turns.
+    fn is_screw(&self, edge: &Edge) -> bool {
+        let Origin::Joint(joint) = edge.origin else {
+            return false;
+        };
+        let joints = &self.network.model.joints;
+        let leader = joints[joint].follow.map(|follow| joints[follow.joint].kind);
+        edge.kind == Kind::Prismatic && leader == Some(Kind::Revolute)
+    }
+
+    /// What the position of a joint that follows another has besides the other's.
+    fn constant(&self, joint: usize) -> f64 {
+        let follow = self.network.model.joints[joint].follow;
+        follow.map_or(0.0, |follow| follow.offset)
     }
 
     fn finish(&mut self, edge: usize, axis: usize, group: Option<usize>, name: &str) {
@@ -150,6 +169,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             last = Some(at);
         }
         self.add_bodies(framed, &mut all);
+        super::screws::join(self.network.model, &mut all);
         all
     }
 
@@ -164,6 +184,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             } else {
                 "revolute"
             },
+            pitch: None,
             antecedent,
             step,
             follows: None,
@@ -233,7 +254,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             symbols.push("off");
         }
         if let Some((stiffness, rest)) = own.spring.filter(|_| !has_loops) {
-            joint.spring = Some(rest);
+            joint.spring = Some(rest - self.constant(at));
             joint.values.push(("k", stiffness));
         }
         if let Some(follow) = own.follow {
@@ -250,8 +271,13 @@ impl<'d, 'm> Draft<'d, 'm> {
                 self.files.report(&own.place, message, help);
             }
             let leader = leader.map_or("", |at| self.names[at].as_str());
-            let factor = crate::geometry::digits::decimal(follow.factor);
-            joint.follows = Some(format!("{factor} * q_{leader}"));
+            let factor = crate::geometry::digits::fine(follow.factor, follow.factor);
+            let unit = match (own.kind, self.network.model.joints[follow.joint].kind) {
+                (Kind::Prismatic, Kind::Revolute) => " m/rad",
+                (Kind::Revolute, Kind::Prismatic) => " rad/m",
+                _ => "",
+            };
+            joint.follows = Some(format!("{factor}{unit} * q_{leader}"));
         }
         if !own.drive.is_empty() {
             joint.comment.push(own.drive.clone());
@@ -314,6 +340,7 @@ fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<Stri
     Joint {
         name,
         kind: "fixed",
+        pitch: None,
         antecedent,
         step,
         follows: None,

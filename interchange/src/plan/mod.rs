@@ -2,6 +2,7 @@
 
 mod joints;
 mod names;
+mod screws;
 
 use crate::{
     assembly::{
@@ -35,8 +36,10 @@ pub(crate) struct Leg {
 #[derive(Debug)]
 pub(crate) struct Joint {
     pub(crate) name: String,
-    /// `revolute`, `prismatic` or `fixed`.
+    /// `revolute`, `prismatic`, `helical` or `fixed`.
     pub(crate) kind: &'static str,
+    /// Of a helical joint what it goes along for a turn.
+    pub(crate) pitch: Option<f64>,
     /// The joint that carries it, where it is not the one before; `base` for none.
     pub(crate) antecedent: Option<String>,
     pub(crate) step: Step,

@@ -191,8 +191,8 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     let Some(element) = of.child("axis") else {
         return Some(Vector3::x());
     };
-    let [x, y, z] = element.numbers(files, "xyz").unwrap_or([1.0, 0.0, 0.0]);
-    let found = Vector3::new(x, y, z).try_normalize(1e-9);
+    let xyz = element.numbers(files, "xyz").unwrap_or([1.0, 0.0, 0.0]);
+    let found = exact::direction(xyz);
     if found.is_none() {
         files.report(
             &element.place,
@@ -200,14 +200,7 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
             "write for instance xyz=\"0 0 1\"",
         );
     }
-    let clean = |v: f64| {
-        if (v - v.round()).abs() < exact::TOLERANCE {
-            v.round()
-        } else {
-            v
-        }
-    };
-    found.map(|axis| axis.map(clean).normalize())
+    found
 }
 
 /// Joints that follow others.

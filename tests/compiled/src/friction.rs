@@ -1,9 +1,12 @@
-//! Robots with every kind of friction, and the text of their descriptions.
+//! Robots with every kind of friction and with screws, and the text of their descriptions.
 
 robot!(friction_arm: FrictionArm);
 robot!(friction_bar: FrictionBar);
+robot!(screw_arm: ScrewArm);
 
 /// The description of [`FrictionArm`].
 pub const ARM: &str = include_str!("../friction/friction_arm.toml");
 /// The description of [`FrictionBar`].
 pub const BAR: &str = include_str!("../friction/friction_bar.toml");
+/// The description of [`ScrewArm`].
+pub const SCREW: &str = include_str!("../friction/screw_arm.toml");

@@ -118,6 +118,103 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
     assert_eq!(made(&leg("planar", &keys)), made(&written(&one_by_one)));
 }
 
+/// What joint 1 of the leg is, a slide, with its follow-up: variables of both, and whether they are driven.
+fn screw(keys: &str) -> Vec<(String, JointKind, Vec<(usize, f64)>, bool)> {
+    let of_joint = |joint: &Joint| {
+        let variable = joint
+            .variable
+            .iter()
+            .map(|(of, factor)| (*of, factor.value()));
+        let name = joint.name.value.clone();
+        (name, joint.kind.value, variable.collect(), joint.actuated)
+    };
+    let legs = good(&leg("helical", keys)).legs;
+    legs[0].joints[1..3].iter().map(of_joint).collect()
+}
+
+#[test]
+fn a_helical_joint_is_a_slide_that_follows_a_turn() {
+    let placed = "alpha = \"30 deg\"\nd = 0.1\ntheta = \"q + 45 deg\"\nr = 0.2\npitch = \"5 mm\"";
+    let slide = "alpha = \"30 deg\"\nd = 0.1\nr = \"0.001 m/rad * q_wrist + 0.2\"\nparameters = []";
+    let one_by_one = first("wrist_slide", "prismatic", slide)
+        + &first("wrist", "revolute", "theta = \"q + 45 deg\"");
+    assert_eq!(made(&leg("helical", placed)), made(&written(&one_by_one)));
+    let lead = 0.005 / std::f64::consts::TAU;
+    let expected = |lead: f64, is_driven: bool| {
+        vec![
+            (
+                "wrist_slide".to_owned(),
+                JointKind::Prismatic,
+                vec![(2, lead)],
+                false,
+            ),
+            (
+                "wrist".to_owned(),
+                JointKind::Revolute,
+                vec![(2, 1.0)],
+                is_driven,
+            ),
+        ]
+    };
+    assert_eq!(screw("pitch = \"5 mm\""), expected(lead, false));
+    assert_eq!(
+        screw("pitch = 0.005\nactuated = true"),
+        expected(lead, true)
+    );
+    assert_eq!(screw("pitch = \"-0.8 mm/rad\""), expected(-0.0008, false));
+    // It has one variable, and what a joint of one axis can have.
+    let torques =
+        "actuated = true\nspring = \"q\"\nstribeck = \"0.1 rad/s\"\nknown = \"1 N m * cos(q)\"";
+    let legs = good(&leg("helical", &format!("pitch = \"5 mm\"\n{torques}"))).legs;
+    let turn = &legs[0].joints[2];
+    assert!(turn.spring.is_some() && turn.stribeck.is_some() && turn.known.is_some());
+}
+
+#[test]
+fn a_pitch_is_a_length_that_moves_something() {
+    let one = |keys: &str| listed(&leg("helical", keys)).join("\n");
+    assert!(
+        one("").contains("pitch = \"5 mm\" goes along z by 5 mm for each turn"),
+        "{}",
+        one("")
+    );
+    assert!(
+        one("pitch = 0").contains("8:9 a pitch has to move something"),
+        "{}",
+        one("pitch = 0")
+    );
+    let unit = one("pitch = \"5 kg\"");
+    assert!(
+        unit.contains("8:9 `pitch`: expected a length, found a mass"),
+        "{unit}"
+    );
+    let other = listed(&leg("universal", "pitch = \"5 mm\"")).join("\n");
+    assert!(
+        other.contains("8:9 `pitch` is said of a helical joint"),
+        "{other}"
+    );
+}
+
+#[test]
+fn a_variable_in_the_key_of_a_constant_is_told_with_the_axes() {
+    let place = "gamma, b, alpha, d, theta and r are constants that place them";
+    for (word, keys, expected) in [
+        ("planar", "r = \"q\"", format!("a planar joint has the axes `wrist_x` (slide), `wrist_y` (slide), `wrist` (turn): {place}")),
+        ("planar", "theta = \"q_wrist + 90 deg\"", "a planar joint has the axes".to_owned()),
+        ("spherical", "r = \"q + 0.1 m\"", "a spherical joint has the axes `wrist_1` (turn), `wrist_2` (turn), `wrist` (turn): `theta` may hold `q`, the variable of the first".to_owned()),
+        ("universal", "d = \"q\"", "a universal joint has the axes `wrist_1` (turn), `wrist` (turn)".to_owned()),
+        ("cylindrical", "theta = \"q + 1 rad\"", "a cylindrical joint has the axes `wrist_slide` (slide), `wrist` (turn): `r` may hold `q`".to_owned()),
+        ("helical", "pitch = 0.01\nr = \"q\"", "the variable of a helical joint is the angle `q` in theta".to_owned()),
+        ("revolute", "r = \"q\"", "the variable of a revolute joint is the angle `q` in theta".to_owned()),
+        ("prismatic", "theta = \"q\"", "the variable of a prismatic joint is the length `q` in r".to_owned()),
+        ("fixed", "theta = \"q + 10 deg\"", "a fixed joint has no variable: use type = \"revolute\"".to_owned()),
+    ] {
+        let errors = listed(&leg(word, keys)).join("\n");
+        let is_told = errors.contains("is constant and cannot hold a joint variable") && errors.contains(&expected);
+        assert!(is_told, "{word} {keys}: {errors}");
+    }
+}
+
 #[test]
 fn what_joints_of_several_axes_cannot_have() {
     let errors = listed(&leg("universal", "actuated = true\nspring = \"q\""));

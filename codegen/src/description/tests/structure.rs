@@ -53,7 +53,7 @@ x = 1
     let expected = [
         "3:19 a variable cannot be named `x`",
         "3:24 a variable cannot be named `name`",
-        "5:8 `type`: expected one of \"revolute\", \"prismatic\", \"fixed\", \"cylindrical\", \"universal\", \"spherical\", \"planar\", found \"revolut\"; did you mean `revolute`?",
+        "5:8 `type`: expected one of \"revolute\", \"prismatic\", \"fixed\", \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\", found \"revolut\"; did you mean `revolute`?",
         "6:6 the leg `b` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place",
         "7:9 a leg needs at least one joint",
         "8:1 the leg `c` has no `joint`; write its joints as [[leg.NAME.joint]], from the base on",

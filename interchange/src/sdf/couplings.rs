@@ -1,0 +1,172 @@
+//! Axes that follow others: `<mimic>`, and the joints of type gearbox, which join no bodies but two angles.
+
+use super::{
+    frames::Name,
+    gather::{Gathered, JointItem},
+    joints,
+    tree::{self, Axes, Edge},
+    value::number,
+};
+use crate::{
+    files::Place,
+    model::{Follow, Kind, Model},
+};
+
+pub(super) fn read(gathered: &Gathered<'_>, edges: &[Edge], axes: &Axes, model: &mut Model) {
+    for edge in edges {
+        for axis in &edge.axes {
+            if axis.lead.is_none() {
+                mimic(gathered, edge.item, axis.element, axes, model);
+            }
+        }
+    }
+    for item in &gathered.joints {
+        if item.owner == super::gather::Owner::Robot && joints::is_coupling(item) {
+            gearbox(gathered, item, edges, axes, model);
+        }
+    }
+}
+
+/// `<mimic>` of an axis: multiplier (leader - reference) + offset.
+fn mimic(
+    gathered: &Gathered<'_>,
+    item: usize,
+    tag: &'static str,
+    axes: &Axes,
+    model: &mut Model,
+) -> Option<()> {
+    let files = gathered.files;
+    let own = &gathered.joints[item];
+    let mimic = own.element.child(tag)?.child("mimic")?;
+    let name = mimic.required(files, "joint")?;
+    let leading = match mimic.get("axis") {
+        Some("axis2") => "axis2",
+        _ => "axis",
+    };
+    let prefix = |scope: usize| &gathered.frames.scopes[scope].prefix;
+    let is_meant = |other: &JointItem| {
+        let frame = gathered.frames.find(own.scope, name);
+        let is_frame = frame == Some(other.frame);
+        // Up to 1.6 a link of the same name may have the frame.
+        is_frame
+            || prefix(other.scope) == prefix(own.scope) && other.element.get("name") == Some(name)
+    };
+    let leader = gathered.joints.iter().position(is_meant);
+    let leader = leader.and_then(|leader| axes.get(&(leader, leading)).copied());
+    let follower = axes.get(&(item, tag)).copied()?;
+    let kind = leader.map(|leader| model.joints[leader].kind);
+    let (Some(leader), Some(Kind::Revolute | Kind::Prismatic)) = (leader, kind) else {
+        let message = format!("there is no axis `{leading}` of a joint `{name}` to follow");
+        files.report(&mimic.place, message, "name another joint that moves");
+        return None;
+    };
+    let factor = number(files, mimic, "multiplier", 1.0);
+    let reference = number(files, mimic, "reference", 0.0);
+    let offset = number(files, mimic, "offset", 0.0) - factor * reference;
+    let follow = Follow {
+        joint: leader,
+        factor,
+        offset,
+    };
+    set(gathered, &mimic.place, follower, follow, model)
+}
+
+/// Lets a joint follow another that follows none.
+fn set(
+    gathered: &Gathered<'_>,
+    place: &Place,
+    follower: usize,
+    follow: Follow,
+    model: &mut Model,
+) -> Option<()> {
+    let leads = |joint: usize| {
+        let mut all = model.joints.iter().filter_map(|own| own.follow);
+        all.any(|other| other.joint == joint)
+    };
+    let is_in_row = model.joints[follow.joint].follow.is_some()
+        || model.joints[follower].follow.is_some()
+        || follow.joint == follower
+        || leads(follower) && !is_screw(model, follower);
+    if is_in_row {
+        let message = "joints follow each other in a circle or a row";
+        let help = "let each joint follow one that follows none";
+        gathered.files.report(place, message, help);
+        return None;
+    }
+    // What follows the follower, as the slide of a screw its turn, follows the leader.
+    for joint in &mut model.joints {
+        if let Some(own) = joint.follow.as_mut().filter(|own| own.joint == follower) {
+            own.joint = follow.joint;
+            own.offset += own.factor * follow.offset;
+            own.factor *= follow.factor;
+        }
+    }
+    model.joints[follower].follow = Some(follow);
+    Some(())
+}
+
+/// Whether a joint is the turn of a screw, which its slide alone follows: the joint before it.
+fn is_screw(model: &Model, turn: usize) -> bool {
+    let mut others = model.joints.iter().enumerate();
+    others.all(|(at, own)| own.follow.is_none_or(|own| own.joint != turn) || at + 1 == turn)
+}
+
+/// The second angle of a gearbox is minus its ratio times the first: that of the child and of the parent against the
+/// reference body.
+fn gearbox(
+    gathered: &Gathered<'_>,
+    item: &JointItem,
+    edges: &[Edge],
+    axes: &Axes,
+    model: &mut Model,
+) -> Option<()> {
+    let files = gathered.files;
+    let reference = joints::reference_body(gathered, item)?;
+    let base = tree::end(gathered, &reference)?;
+    let angle = |name: &Name, tag: &str| {
+        let link = tree::end(gathered, name)?;
+        let found = turn(gathered, item, edges, [base, link], tag);
+        if found.is_none() {
+            let message = format!(
+                "the gearbox `{}` needs a revolute joint between `{}` and `{}` along its <{tag}>",
+                item.name, reference.text, name.text
+            );
+            let help = "write both joints that the gears turn, each as a joint of its own";
+            files.report(&item.element.place, message, help);
+        }
+        found
+    };
+    let first = angle(&item.parent, "axis");
+    let second = angle(&item.child, "axis2");
+    let ((first, first_sign), (second, second_sign)) = (first?, second?);
+    let ratio = number(files, &item.element, "gearbox_ratio", 1.0);
+    let joint = |edge: usize| axes.get(&(edges[edge].item, "axis")).copied();
+    let follow = Follow {
+        joint: joint(first)?,
+        factor: -ratio * first_sign * second_sign,
+        offset: 0.0,
+    };
+    set(gathered, &item.element.place, joint(second)?, follow, model)
+}
+
+/// The revolute joint between two links along an axis of a gearbox, and whether it counts as the gearbox does, from
+/// the first to the second.
+fn turn(
+    gathered: &Gathered<'_>,
+    item: &JointItem,
+    edges: &[Edge],
+    links: [Option<usize>; 2],
+    tag: &str,
+) -> Option<(usize, f64)> {
+    let wanted = joints::direction(gathered, item, item.element.child(tag)?)?;
+    let found = edges.iter().position(|edge| {
+        let is_turn = edge.axes.len() == 1 && edge.axes[0].joint.kind == Kind::Revolute;
+        is_turn && (edge.ends == links || edge.ends == [links[1], links[0]])
+    })?;
+    let edge = &edges[found];
+    let frame = gathered.joints[edge.item].frame;
+    let own = gathered.frames.seen(frame, item.frame).rotation * edge.axes[0].joint.axis;
+    let along = own.dot(&wanted);
+    let from = if edge.ends == links { 1.0 } else { -1.0 };
+    (along.abs() > 1.0 - 1e-6).then_some((found, from * along.signum()))
+}

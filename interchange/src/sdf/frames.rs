@@ -1,0 +1,271 @@
+//! Frames of SDFormat and what lies between them.
+//!
+//! Every link, joint, model and `<frame>` is a frame. Its pose is told in another one, which may be written anywhere
+//! in the file, so that all of them are gathered before the first is resolved. Two frames are seen from each other
+//! along the way that leads between them, not by way of the world: what is written as a right angle stays one.
+
+use crate::{
+    files::{Files, Place},
+    model::Pose,
+};
+use std::collections::BTreeMap;
+
+/// A name as it stands in the file, and the scope that it stands in.
+#[derive(Debug, Clone)]
+pub(super) struct Name {
+    pub(super) scope: usize,
+    pub(super) text: String,
+    pub(super) place: Place,
+}
+
+/// Another frame, known or by its name.
+#[derive(Debug, Clone)]
+pub(super) enum To {
+    Frame(usize),
+    Named(Name),
+}
+
+/// What a frame moves with.
+#[derive(Debug, Clone)]
+pub(super) enum Holder {
+    World,
+    Link(usize),
+    Other(To),
+    /// A model without a link.
+    Nothing,
+}
+
+/// A frame.
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    /// Its name for people.
+    pub(super) name: String,
+    pub(super) place: Place,
+    /// What the file says of its pose, and the frame that it says it in.
+    pub(super) pose: Pose,
+    pub(super) to: To,
+    pub(super) holder: Holder,
+    /// Of a model the frame in it that the pose is meant for, where it is not its own.
+    pub(super) placed_by: Option<Name>,
+}
+
+/// A model, or the world: names are told from each other within it.
+#[derive(Debug, Clone)]
+pub(super) struct Scope {
+    /// What the names in it begin with, seen from the whole file.
+    pub(super) prefix: String,
+    /// The frame of the model.
+    pub(super) model: usize,
+    /// The version of the file that it stands in.
+    pub(super) version: (u32, u32),
+}
+
+/// All frames; the first is the world.
+#[derive(Debug)]
+pub(super) struct Frames {
+    pub(super) all: Vec<Frame>,
+    pub(super) scopes: Vec<Scope>,
+    by_name: BTreeMap<String, usize>,
+    /// The frame that the pose of each is told in, once names are resolved.
+    to: Vec<usize>,
+}
+
+impl Frames {
+    /// The world alone.
+    pub(super) fn new(place: Place, version: (u32, u32)) -> Self {
+        let world = Frame {
+            name: "world".to_owned(),
+            place,
+            pose: Pose::identity(),
+            to: To::Frame(0),
+            holder: Holder::World,
+            placed_by: None,
+        };
+        let scope = Scope {
+            prefix: String::new(),
+            model: 0,
+            version,
+        };
+        Self {
+            all: vec![world],
+            scopes: vec![scope],
+            by_name: BTreeMap::new(),
+            to: Vec::new(),
+        }
+    }
+
+    /// Adds a frame under its whole name. Up to 1.6 a joint may be called like a link: the first of both keeps the
+    /// name.
+    pub(super) fn add(&mut self, files: &Files, frame: Frame, whole: &str, version: (u32, u32)) {
+        let at = self.all.len();
+        if self.by_name.contains_key(whole) {
+            if version >= (1, 7) {
+                let message = format!("two things are called `{}`", frame.name);
+                let help = "give each link, joint, frame and model a name of its own in its model";
+                files.report(&frame.place, message, help);
+            }
+        } else {
+            self.by_name.insert(whole.to_owned(), at);
+        }
+        self.all.push(frame);
+    }
+
+    /// The frame of a name.
+    pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
+        let scope = self.scopes.get(scope)?;
+        let whole = |name: &str| {
+            self.by_name
+                .get(&format!("{}{name}", scope.prefix))
+                .copied()
+        };
+        match name {
+            "world" => Some(0),
+            "__model__" => Some(scope.model),
+            _ => match name.strip_suffix("::__model__") {
+                Some(model) => whole(model),
+                None => whole(name),
+            },
+        }
+    }
+
+    /// The frame of a name; an error where there is none.
+    pub(super) fn named(&self, files: &Files, name: &Name) -> Option<usize> {
+        let found = self.find(name.scope, &name.text);
+        if found.is_none() {
+            let scope = &self.scopes[name.scope];
+            let own = self.by_name.keys();
+            let own = own.filter_map(|whole| whole.strip_prefix(scope.prefix.as_str()));
+            let near = overact_codegen::diagnostic::did_you_mean(&name.text, own);
+            let message = format!("there is no link, joint, frame or model `{}`", name.text);
+            let help =
+                "name one of the same model, one of a model in it as `model::name`, or `__model__`";
+            files.report(
+                &name.place,
+                message,
+                near.unwrap_or_else(|| help.to_owned()),
+            );
+        }
+        found
+    }
+
+    fn resolved(&self, files: &Files, to: &To) -> Option<usize> {
+        match to {
+            To::Frame(frame) => Some(*frame),
+            To::Named(name) => self.named(files, name),
+        }
+    }
+
+    /// Finds out what each pose is told in; `None` after an error.
+    pub(super) fn resolve(&mut self, files: &Files) -> Option<()> {
+        let to: Vec<Option<usize>> = self
+            .all
+            .iter()
+            .map(|frame| self.resolved(files, &frame.to))
+            .collect();
+        self.to = to.into_iter().collect::<Option<_>>()?;
+        self.check_circles(files)?;
+        self.place_models(files)
+    }
+
+    /// Every way of frames has to lead to the world.
+    fn check_circles(&self, files: &Files) -> Option<()> {
+        let mut leads = vec![false; self.all.len()];
+        leads[0] = true;
+        for start in 1..self.all.len() {
+            let (mut way, mut at) = (Vec::new(), start);
+            while !leads[at] && way.len() <= self.all.len() {
+                way.push(at);
+                at = self.to[at];
+            }
+            if way.len() > self.all.len() {
+                // After as many steps as there are frames, this one stands on the circle: the first of it is told.
+                let mut first = at;
+                let mut other = self.to[at];
+                while other != at {
+                    first = first.min(other);
+                    other = self.to[other];
+                }
+                let frame = &self.all[first];
+                let message = format!(
+                    "the pose of `{}` is told in frames that go in a circle",
+                    frame.name
+                );
+                let help = "let one of them stand on something else: take its `relative_to` or `attached_to` out";
+                files.report(&frame.place, message, help);
+                return None;
+            }
+            way.into_iter().for_each(|at| leads[at] = true);
+        }
+        Some(())
+    }
+
+    /// Models that are placed by a frame in them get the pose of their own frame: inner ones first, which stand
+    /// behind the outer ones.
+    fn place_models(&mut self, files: &Files) -> Option<()> {
+        for model in (0..self.all.len()).rev() {
+            let Some(name) = self.all[model].placed_by.clone() else {
+                continue;
+            };
+            let frame = self.named(files, &name)?;
+            let mut inside = Pose::identity();
+            let mut at = frame;
+            while at != model {
+                if at == 0 {
+                    let message = format!("`{}` does not stand on its own model", name.text);
+                    let help = "a model is placed by a frame whose pose is told in the model";
+                    files.report(&name.place, message, help);
+                    return None;
+                }
+                inside = self.all[at].pose * inside;
+                at = self.to[at];
+            }
+            self.all[model].pose *= inside.inverse();
+        }
+        Some(())
+    }
+
+    /// A frame seen from another.
+    pub(super) fn seen(&self, frame: usize, from: usize) -> Pose {
+        let way = |start: usize| {
+            let (mut way, mut at) = (vec![start], start);
+            while at != 0 {
+                at = self.to[at];
+                way.push(at);
+            }
+            way
+        };
+        let (mut of, mut to) = (way(frame), way(from));
+        while of.len() > 1 && to.len() > 1 && of[of.len() - 2] == to[to.len() - 2] {
+            of.pop();
+            to.pop();
+        }
+        let along = |way: &[usize]| {
+            way.iter()
+                .rev()
+                .skip(1)
+                .fold(Pose::identity(), |pose, &at| pose * self.all[at].pose)
+        };
+        along(&to).inv_mul(&along(&of))
+    }
+
+    /// The link that a frame moves with, `Some(None)` for the world; `None` after an error.
+    pub(super) fn link(&self, files: &Files, frame: usize, asked: &Name) -> Option<Option<usize>> {
+        let mut at = frame;
+        for _ in 0..=self.all.len() {
+            match &self.all[at].holder {
+                Holder::World => return Some(None),
+                Holder::Link(link) => return Some(Some(*link)),
+                Holder::Other(to) => at = self.resolved(files, to)?,
+                Holder::Nothing => {
+                    let message = format!("the model `{}` has no link", self.all[at].name);
+                    files.report(&asked.place, message, "name a link");
+                    return None;
+                }
+            }
+        }
+        let message = format!("`{}` is attached to frames that go in a circle", asked.text);
+        let help = "let one of them be attached to a link";
+        files.report(&asked.place, message, help);
+        None
+    }
+}

@@ -1,0 +1,341 @@
+//! Models within each other and files that they include, as lists of links, joints and frames.
+
+use super::{
+    frames::{Frame, Frames, Holder, Name, Scope, To},
+    include::{self, Included, Source},
+    value::{flag, pose, text, told_in},
+};
+use crate::{
+    files::{Files, Place},
+    xml::Element,
+};
+use std::{collections::BTreeSet, path::PathBuf};
+
+/// Models within each other.
+const DEPTH: usize = 60;
+/// Models altogether.
+const MODELS: usize = 20_000;
+
+/// Whose a link is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// The robot's.
+    Robot,
+    /// A static model's: it stands still in the world.
+    Ground,
+    /// Another model's of the same world.
+    Stranger,
+}
+
+/// A link.
+#[derive(Debug)]
+pub(super) struct Link {
+    pub(super) name: String,
+    pub(super) frame: usize,
+    pub(super) owner: Owner,
+    pub(super) element: Element,
+}
+
+/// A joint.
+#[derive(Debug)]
+pub(super) struct JointItem {
+    pub(super) name: String,
+    pub(super) frame: usize,
+    pub(super) scope: usize,
+    pub(super) owner: Owner,
+    pub(super) parent: Name,
+    pub(super) child: Name,
+    pub(super) element: Element,
+}
+
+/// What a file says, gathered.
+#[derive(Debug)]
+pub(super) struct Gathered<'f> {
+    pub(super) files: &'f Files,
+    pub(super) frames: Frames,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<JointItem>,
+    pub(super) plugins: Vec<String>,
+    models: usize,
+    /// Names of links and joints that are taken.
+    taken: BTreeSet<(&'static str, String)>,
+    /// Files within each other that are open.
+    open: Vec<PathBuf>,
+    /// What names of the robot begin with in the whole file, which its description leaves out.
+    shown_without: String,
+}
+
+impl<'f> Gathered<'f> {
+    pub(super) fn new(
+        files: &'f Files,
+        place: Place,
+        version: (u32, u32),
+        open: PathBuf,
+        shown_without: String,
+    ) -> Self {
+        Self {
+            files,
+            frames: Frames::new(place, version),
+            links: Vec::new(),
+            joints: Vec::new(),
+            plugins: Vec::new(),
+            models: 0,
+            taken: BTreeSet::new(),
+            open: vec![open],
+            shown_without,
+        }
+    }
+
+    /// A name for people: without the model where the whole robot is one model of a world.
+    fn shown(&self, whole: &str) -> String {
+        let own = whole.strip_prefix(self.shown_without.as_str());
+        own.unwrap_or(whole).to_owned()
+    }
+
+    /// A model in a scope, with all that is in it.
+    pub(super) fn model(
+        &mut self,
+        element: &Element,
+        source: Source,
+        scope: usize,
+        owner: Owner,
+    ) -> Option<()> {
+        self.models += 1;
+        if self.frames.scopes.len() > MODELS || self.models > MODELS || self.open.len() > DEPTH {
+            let message = format!("more than {MODELS} models, or {DEPTH} files within each other");
+            let help = "describe the robot in fewer parts";
+            self.files.report(&element.place, message, help);
+            return None;
+        }
+        let name = element.required(self.files, "name")?.to_owned();
+        if flag(self.files, element, "static") && owner == Owner::Robot {
+            let message = format!("the model `{name}` is static: nothing of it moves");
+            let help = "take <static> out, and fix its base by a joint of type fixed whose parent is `world`";
+            self.files.report(&element.place, message, help);
+            return None;
+        }
+        let frame = self.frames.all.len();
+        let outer = self.frames.scopes[scope].clone();
+        let whole = match source.is_merged {
+            true => format!("{}_merged__{name}__model__", outer.prefix),
+            false => format!("{}{name}", outer.prefix),
+        };
+        self.frame(element, &name, &whole, scope, Holder::Nothing);
+        let prefix = match source.is_merged {
+            true => outer.prefix,
+            false => format!("{whole}::"),
+        };
+        let own = self.frames.scopes.len();
+        self.frames.scopes.push(Scope {
+            prefix,
+            model: frame,
+            version: source.version,
+        });
+        let placed_by = element.attribute("placement_frame");
+        self.frames.all[frame].placed_by =
+            placed_by
+                .filter(|(name, _)| !name.is_empty())
+                .map(|(name, place)| Name {
+                    scope: own,
+                    text: name.to_owned(),
+                    place: place.clone(),
+                });
+        let is_from_file = source.from.is_some();
+        self.open.extend(source.from);
+        let gathered = self.inside(element, own, frame, owner);
+        if is_from_file {
+            self.open.pop();
+        }
+        gathered
+    }
+
+    /// Everything in a model; its canonical link is the one that it names, or the first.
+    fn inside(
+        &mut self,
+        element: &Element,
+        scope: usize,
+        frame: usize,
+        owner: Owner,
+    ) -> Option<()> {
+        let first_link = self.links.len();
+        self.parts(element, scope, owner)?;
+        let canonical = element.attribute("canonical_link");
+        self.frames.all[frame].holder = match canonical.filter(|(name, _)| !name.is_empty()) {
+            Some((name, place)) => Holder::Other(To::Named(Name {
+                scope,
+                text: name.to_owned(),
+                place: place.clone(),
+            })),
+            None if owner == Owner::Ground => Holder::World,
+            None if self.links.len() > first_link => Holder::Link(first_link),
+            None => Holder::Nothing,
+        };
+        Some(())
+    }
+
+    /// Links, joints, frames and models in a model or in the world.
+    pub(super) fn parts(&mut self, element: &Element, scope: usize, owner: Owner) -> Option<()> {
+        let version = self.frames.scopes[scope].version;
+        for child in &element.children {
+            match child.name.as_str() {
+                "link" => self.link(child, scope, owner)?,
+                "joint" => self.joint(child, scope, owner)?,
+                "frame" => self.named_frame(child, scope)?,
+                "plugin" if scope > 0 && owner == Owner::Robot => {
+                    let name = child.get("filename").or_else(|| child.get("name"));
+                    self.plugins.push(name.unwrap_or("plugin").to_owned());
+                }
+                "model" if scope > 0 => {
+                    let source = Source {
+                        version,
+                        from: None,
+                        is_merged: false,
+                    };
+                    self.model(child, source, scope, owner)?;
+                }
+                "include" if scope > 0 => match include::read(self.files, child, &self.open) {
+                    Included::Model(model, source) => self.model(&model, source, scope, owner)?,
+                    Included::Elsewhere(uri, place) => {
+                        include::refuse(self.files, &uri, &place);
+                        return None;
+                    }
+                    Included::Error => return None,
+                },
+                _ => {}
+            }
+        }
+        Some(())
+    }
+
+    /// Adds the frame of an element; the pose is told in the model where nothing else is said.
+    fn frame(
+        &mut self,
+        element: &Element,
+        name: &str,
+        whole: &str,
+        scope: usize,
+        holder: Holder,
+    ) -> usize {
+        let own = element.child("pose");
+        let to = told_in(own).map_or(
+            To::Frame(self.frames.scopes[scope].model),
+            |(text, place)| named(scope, text, place),
+        );
+        let frame = Frame {
+            name: name.to_owned(),
+            place: element.place.clone(),
+            pose: pose(self.files, own),
+            to,
+            holder,
+            placed_by: None,
+        };
+        let version = self.frames.scopes[scope].version;
+        self.frames.add(self.files, frame, whole, version);
+        self.frames.all.len() - 1
+    }
+
+    /// The name of an element and its whole name; `None` after an error.
+    fn names(&self, element: &Element, scope: usize) -> Option<(String, String)> {
+        let name = element.required(self.files, "name")?;
+        if name.trim().is_empty() || name == "world" || name.starts_with("__") {
+            let message = format!("`{name}` can't be the name of a {}", element.name);
+            let help = "take a name that is neither empty nor `world` and does not begin with `__`";
+            self.files.report(&element.place, message, help);
+            return None;
+        }
+        let prefix = &self.frames.scopes[scope].prefix;
+        Some((name.to_owned(), format!("{prefix}{name}")))
+    }
+
+    fn link(&mut self, element: &Element, scope: usize, owner: Owner) -> Option<()> {
+        let (name, whole) = self.names(element, scope)?;
+        let holder = match owner {
+            Owner::Ground => Holder::World,
+            _ => Holder::Link(self.links.len()),
+        };
+        let frame = self.frame(element, &name, &whole, scope, holder);
+        if owner == Owner::Ground {
+            return Some(());
+        }
+        let shown = self.shown(&whole);
+        if !self.taken.insert(("link", shown.clone())) {
+            let message = format!("two links are called `{name}`");
+            let help = "give each link a name of its own";
+            self.files.report(&element.place, message, help);
+        }
+        self.links.push(Link {
+            name: shown,
+            frame,
+            owner,
+            element: element.clone(),
+        });
+        Some(())
+    }
+
+    fn joint(&mut self, element: &Element, scope: usize, owner: Owner) -> Option<()> {
+        let (name, whole) = self.names(element, scope)?;
+        let end = |tag: &str| {
+            let found = text(element, tag);
+            if found.is_none() {
+                let message = format!("the joint `{name}` has no <{tag}>");
+                let help = format!("write <{tag}>NAME OF A LINK</{tag}>");
+                self.files.report(&element.place, message, help);
+            }
+            let (text, place) = found?;
+            Some(Name {
+                scope,
+                text: text.to_owned(),
+                place: place.clone(),
+            })
+        };
+        let (parent, child) = (end("parent")?, end("child")?);
+        let holder = Holder::Other(To::Named(child.clone()));
+        let frame = self.frame(element, &name, &whole, scope, holder);
+        if told_in(element.child("pose")).is_none() {
+            self.frames.all[frame].to = To::Named(child.clone());
+        }
+        if owner == Owner::Ground {
+            return Some(());
+        }
+        let shown = self.shown(&whole);
+        if !self.taken.insert(("joint", shown.clone())) {
+            let message = format!("two joints are called `{name}`");
+            let help = "give each joint a name of its own";
+            self.files.report(&element.place, message, help);
+        }
+        self.joints.push(JointItem {
+            name: shown,
+            frame,
+            scope,
+            owner,
+            parent,
+            child,
+            element: element.clone(),
+        });
+        Some(())
+    }
+
+    /// `<frame>`, which is attached to the model where it says nothing else, and told in what it is attached to.
+    fn named_frame(&mut self, element: &Element, scope: usize) -> Option<()> {
+        let (name, whole) = self.names(element, scope)?;
+        let attached = element.attribute("attached_to");
+        let attached = attached.filter(|(name, _)| !name.is_empty());
+        let to = attached.map_or(
+            To::Frame(self.frames.scopes[scope].model),
+            |(text, place)| named(scope, text, place),
+        );
+        let frame = self.frame(element, &name, &whole, scope, Holder::Other(to.clone()));
+        if told_in(element.child("pose")).is_none() {
+            self.frames.all[frame].to = to;
+        }
+        Some(())
+    }
+}
+
+fn named(scope: usize, text: &str, place: &Place) -> To {
+    To::Named(Name {
+        scope,
+        text: text.to_owned(),
+        place: place.clone(),
+    })
+}

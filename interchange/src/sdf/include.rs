@@ -1,0 +1,150 @@
+//! `<include>`: the model of another file, which has to lie beside or beneath the one that includes it.
+
+use super::{SKIPPED, value::text, version};
+use crate::{
+    files::{Files, Place},
+    xml::{self, Element},
+};
+use std::path::{Path, PathBuf};
+
+/// Files altogether.
+const FILES: usize = 500;
+
+/// Where a model comes from.
+#[derive(Debug, Clone)]
+pub(super) struct Source {
+    pub(super) version: (u32, u32),
+    /// The file that it was included from.
+    pub(super) from: Option<PathBuf>,
+    /// Whether its parts become those of the model around it.
+    pub(super) is_merged: bool,
+}
+
+/// What an include leads to.
+pub(super) enum Included {
+    Model(Box<Element>, Source),
+    /// A place that nobody looks at: its address, and where that stands.
+    Elsewhere(String, Place),
+    Error,
+}
+
+/// Reads what an element includes; the last of the open files is the one that it stands in.
+pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Included {
+    let Some((uri, place)) = text(element, "uri") else {
+        let message = "<include> names no file";
+        files.report(&element.place, message, "write <uri>FILE</uri>");
+        return Included::Error;
+    };
+    if let Some(params) = element.child("params") {
+        let message = "an <include> that changes what it includes can't be said";
+        let help = "write the model out: `gz sdf -p FILE` does";
+        files.report(&params.place, message, help);
+        return Included::Error;
+    }
+    let Some(path) = beneath(uri, open) else {
+        return Included::Elsewhere(uri.to_owned(), place.clone());
+    };
+    let found = included(files, element, &path, open, (uri, place));
+    found.map_or(Included::Error, |(model, source)| {
+        Included::Model(model, source)
+    })
+}
+
+/// Refuses an address that nobody looks at.
+pub(super) fn refuse(files: &Files, uri: &str, place: &Place) {
+    let message = format!("`{uri}` is not read: only files in the robot's own folder are");
+    let help = "put the model beside this file and write its path from here, or write it out: `gz sdf -p FILE` does";
+    files.report(place, message, help);
+}
+
+/// The path of an address that is relative and stays beneath the folder of the first file.
+fn beneath(uri: &str, open: &[PathBuf]) -> Option<PathBuf> {
+    let plain = Path::new(uri);
+    if uri.contains(':') || plain.is_absolute() || uri.contains('\\') {
+        return None;
+    }
+    let folder = open.last()?.parent()?;
+    let path = folder.join(plain);
+    let path = if path.is_dir() {
+        path.join("model.sdf")
+    } else {
+        path
+    };
+    let first = open.first()?.parent()?;
+    let real = |path: &Path| match path.as_os_str().is_empty() {
+        true => Path::new(".").canonicalize().ok(),
+        false => path.canonicalize().ok(),
+    };
+    match (real(first), real(&path)) {
+        (Some(first), Some(path)) if !path.starts_with(&first) => None,
+        // What is not there is told as such, but for a path that leads out.
+        (_, None) if plain.components().any(|part| part.as_os_str() == "..") => None,
+        _ => Some(path),
+    }
+}
+
+fn included(
+    files: &Files,
+    element: &Element,
+    path: &Path,
+    open: &[PathBuf],
+    (uri, place): (&str, &Place),
+) -> Option<(Box<Element>, Source)> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let is_open = |other: &PathBuf| real(other).is_some_and(|other| real(path) == Some(other));
+    if open.iter().any(is_open) {
+        let message = format!("`{uri}` includes itself in the end");
+        files.report(place, message, "take one of the includes out");
+        return None;
+    }
+    if files.count() > FILES {
+        let message = format!("more than {FILES} files are included");
+        files.report(place, message, "describe the robot in fewer files");
+        return None;
+    }
+    let file = files.read(path, Some(place))?;
+    let root = xml::parse(files, file, &SKIPPED)?;
+    let version = version(files, &root)?;
+    let mut models = root.all("model");
+    let (Some(model), None) = (models.next(), models.next()) else {
+        let message = "an included file has one <model>";
+        files.report(&root.place, message, "put one model into a file");
+        return None;
+    };
+    let source = Source {
+        version,
+        from: Some(path.to_owned()),
+        is_merged: matches!(element.get("merge"), Some("true" | "1")),
+    };
+    Some((Box::new(changed(model.clone(), element)), source))
+}
+
+/// The model with the name, pose and other things that the include gives it.
+fn changed(mut model: Element, include: &Element) -> Element {
+    if let Some((name, place)) = text(include, "name") {
+        model.attributes.retain(|(key, ..)| key != "name");
+        let own = ("name".to_owned(), name.to_owned(), place.clone());
+        model.attributes.push(own);
+    }
+    if let Some((frame, place)) = text(include, "placement_frame") {
+        model
+            .attributes
+            .retain(|(key, ..)| key != "placement_frame");
+        let own = (
+            "placement_frame".to_owned(),
+            frame.to_owned(),
+            place.clone(),
+        );
+        model.attributes.push(own);
+    }
+    for tag in ["pose", "static"] {
+        if let Some(own) = include.child(tag) {
+            model.children.retain(|child| child.name != tag);
+            model.children.push(own.clone());
+        }
+    }
+    let plugins = include.all("plugin").cloned();
+    model.children.extend(plugins);
+    model.place = include.place.clone();
+    model
+}

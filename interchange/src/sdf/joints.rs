@@ -1,0 +1,210 @@
+//! Joints of SDFormat as axes of one motion each.
+
+use super::{
+    frames::Name,
+    gather::{Gathered, JointItem},
+    value::{flag, limit, number, several, text},
+};
+use crate::{
+    geometry::exact,
+    model::{Joint, Kind},
+    xml::Element,
+};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// One axis of a joint.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    /// The joint of the model, passive and without its place on the body.
+    pub(super) joint: Joint,
+    /// The element that it is told by: `axis` or `axis2`.
+    pub(super) element: &'static str,
+    /// Of the slide of a screw what it moves along for each radian of its turn.
+    pub(super) lead: Option<f64>,
+}
+
+/// The axes of a joint from its parent to its child, with directions in the frame of the joint; none where it is
+/// fixed. `None` after an error.
+pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis>> {
+    let one = |kind, tag, name: String| axis(gathered, item, kind, tag, name);
+    let name = || item.name.clone();
+    let numbered = |at: usize| format!("{}_{at}", item.name);
+    Some(match item.element.get("type").unwrap_or("no type") {
+        "fixed" => Vec::new(),
+        "revolute" | "continuous" => vec![one(Kind::Revolute, "axis", name())?],
+        "prismatic" => vec![one(Kind::Prismatic, "axis", name())?],
+        "ball" => {
+            let joint = Joint::new(&item.name, Kind::Ball, item.element.place.clone());
+            vec![Axis {
+                joint,
+                element: "axis",
+                lead: None,
+            }]
+        }
+        "universal" | "revolute2" => {
+            let both = [
+                one(Kind::Revolute, "axis", numbered(1))?,
+                one(Kind::Revolute, "axis2", numbered(2))?,
+            ];
+            let [first, second] = both.each_ref().map(|axis| axis.joint.axis);
+            if first.cross(&second).norm() < 1e-6 {
+                let message = format!("the two axes of the joint `{}` are parallel", item.name);
+                let help = "give <axis2> another direction than <axis>";
+                gathered.files.report(&item.element.place, message, help);
+                return None;
+            }
+            both.into()
+        }
+        "screw" => {
+            let turn = one(Kind::Revolute, "axis", name())?;
+            let mut slide = Axis {
+                lead: Some(lead(gathered, item)?),
+                ..turn.clone()
+            };
+            let place = item.element.place.clone();
+            slide.joint = Joint {
+                axis: turn.joint.axis,
+                ..Joint::new(&format!("{}_slide", item.name), Kind::Prismatic, place)
+            };
+            // Both along one axis, in either order; the last carries the body.
+            vec![slide, turn]
+        }
+        other => {
+            let message = format!(
+                "the joint `{}` is `{other}`, which can't be said",
+                item.name
+            );
+            let help = "revolute, continuous, prismatic, fixed, universal, revolute2, ball, screw and gearbox joints can";
+            gathered.files.report(&item.element.place, message, help);
+            return None;
+        }
+    })
+}
+
+fn axis(
+    gathered: &Gathered<'_>,
+    item: &JointItem,
+    kind: Kind,
+    tag: &'static str,
+    name: String,
+) -> Option<Axis> {
+    let files = gathered.files;
+    let Some(element) = item.element.child(tag) else {
+        let message = format!("the joint `{}` has no <{tag}>", item.name);
+        let help = format!("write <{tag}><xyz>0 0 1</xyz></{tag}>");
+        files.report(&item.element.place, message, help);
+        return None;
+    };
+    let mut joint = Joint::new(&name, kind, item.element.place.clone());
+    joint.axis = direction(gathered, item, element)?;
+    if let Some(dynamics) = element.child("dynamics") {
+        joint.damping = number(files, dynamics, "damping", 0.0);
+        joint.friction = number(files, dynamics, "friction", 0.0);
+        let stiffness = number(files, dynamics, "spring_stiffness", 0.0);
+        let rest = number(files, dynamics, "spring_reference", 0.0);
+        joint.spring = (stiffness != 0.0).then_some((stiffness, rest));
+    }
+    if let Some(own) = element.child("limit") {
+        let is_limited = item.element.get("type") != Some("continuous");
+        let ends = (limit(files, own, "lower"), limit(files, own, "upper"));
+        if let ((Some(low), Some(high)), true) = (ends, is_limited) {
+            joint.range = (low < high).then_some([low, high]);
+        }
+        joint.speed = limit(files, own, "velocity").filter(|speed| *speed > 0.0);
+    }
+    Some(Axis {
+        joint,
+        element: tag,
+        lead: None,
+    })
+}
+
+/// The direction of an axis in the frame of its joint.
+pub(super) fn direction(
+    gathered: &Gathered<'_>,
+    item: &JointItem,
+    element: &Element,
+) -> Option<Vector3<f64>> {
+    let (files, frames) = (gathered.files, &gathered.frames);
+    let scope = &frames.scopes[item.scope];
+    let given = element.child("xyz");
+    let xyz = given.map_or(Some([0.0, 0.0, 1.0]), |xyz| several(files, xyz))?;
+    let Some(own) = exact::direction(xyz) else {
+        let place = given.map_or(&element.place, |xyz| &xyz.text.1);
+        files.report(
+            place,
+            "the axis has no direction",
+            "write for instance <xyz>0 0 1</xyz>",
+        );
+        return None;
+    };
+    let named = given.and_then(|xyz| xyz.attribute("expressed_in"));
+    // Up to 1.4 all axes are told in the model, in 1.5 and 1.6 those that say so.
+    let in_model = scope.version <= (1, 4) || flag(files, element, "use_parent_model_frame");
+    let frame = match named.filter(|(name, _)| !name.is_empty()) {
+        Some((name, place)) => {
+            let name = Name {
+                scope: item.scope,
+                text: name.to_owned(),
+                place: place.clone(),
+            };
+            Some(frames.named(files, &name)?)
+        }
+        None => in_model.then_some(scope.model),
+    };
+    Some(frame.map_or(own, |frame| {
+        let turned = exact::cleaned(&frames.seen(frame, item.frame).rotation);
+        turned * own
+    }))
+}
+
+/// What a screw moves along for each radian, m: positive of a thread with a right hand.
+fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
+    let files = gathered.files;
+    let read = |tag: &str| {
+        item.element
+            .child(tag)
+            .map(|own| (several(files, own), own))
+    };
+    let (value, element) = match (read("screw_thread_pitch"), read("thread_pitch")) {
+        (Some((value, own)), _) => (value.map(|[pitch]| pitch / TAU), own),
+        // The older word counts radians for a metre, of a thread with a left hand.
+        (None, Some((value, own))) => (value.map(|[pitch]| -1.0 / pitch), own),
+        (None, None) => {
+            let message = format!("the screw `{}` has no pitch", item.name);
+            let help = "write <screw_thread_pitch>, in m for a turn";
+            files.report(&item.element.place, message, help);
+            return None;
+        }
+    };
+    let lead = value?;
+    if !lead.is_finite() || lead == 0.0 {
+        let message = format!("the pitch of the screw `{}` moves nothing", item.name);
+        let help = "write <screw_thread_pitch>, in m for a turn, and not 0";
+        files.report(&element.text.1, message, help);
+        return None;
+    }
+    Some(lead)
+}
+
+/// Whether a joint is none of its own, but a coupling of two others.
+pub(super) fn is_coupling(item: &JointItem) -> bool {
+    item.element.get("type") == Some("gearbox")
+}
+
+/// The reference body of a gearbox.
+pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Option<Name> {
+    let found = text(&item.element, "gearbox_reference_body");
+    if found.is_none() {
+        let message = format!("the gearbox `{}` has no reference body", item.name);
+        let help = "write <gearbox_reference_body>: the link that carries both of its axes";
+        gathered.files.report(&item.element.place, message, help);
+    }
+    let (text, place) = found?;
+    Some(Name {
+        scope: item.scope,
+        text: text.to_owned(),
+        place: place.clone(),
+    })
+}

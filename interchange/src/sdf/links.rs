@@ -1,0 +1,109 @@
+//! Masses and inertias of links.
+
+use super::{
+    gather::{Gathered, Link},
+    value::{flag, number, pose, told_in},
+};
+use crate::model::{Inertia, Model};
+use nalgebra::{Matrix3, Point3};
+
+/// Mass and inertia of a link, and whether it has some of which the file does not say how much.
+pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>, bool) {
+    let files = gathered.files;
+    let Some(inertial) = link.element.child("inertial") else {
+        return (Some(usual()), false);
+    };
+    if let Some(added) = inertial.child("fluid_added_mass") {
+        let message = "mass that a fluid adds can't be said";
+        let help = "take <fluid_added_mass> out where the robot moves in air";
+        files.report(&added.place, message, help);
+    }
+    if matches!(inertial.get("auto"), Some("true" | "1")) {
+        return (None, true);
+    }
+    let own = inertial.child("pose");
+    if let Some((name, place)) = told_in(own) {
+        let message = format!("the pose of an <inertial> is told in its link, not in `{name}`");
+        let help = "give it in the frame of the link, without relative_to";
+        files.report(place, message, help);
+    }
+    let mass = number(files, inertial, "mass", 1.0);
+    if mass < 0.0 {
+        let message = "a mass is negative";
+        files.report(&inertial.place, message, "give a mass that is zero or more");
+    }
+    let tensor = inertial
+        .child("inertia")
+        .map_or_else(Matrix3::identity, |of| {
+            let value = |name: &str, default| number(files, of, name, default);
+            let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| value(name, 1.0));
+            let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| value(name, 0.0));
+            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        });
+    let frame = pose(files, own);
+    let about_centre = Inertia {
+        mass,
+        centre: Point3::origin(),
+        tensor,
+    };
+    (Some(about_centre.seen(&frame)), false)
+}
+
+/// What SDFormat gives a link that says nothing.
+fn usual() -> Inertia {
+    Inertia {
+        mass: 1.0,
+        centre: Point3::origin(),
+        tensor: Matrix3::identity(),
+    }
+}
+
+/// What a reader has to know of the links: where SDFormat's own values stand, and where mass is not told.
+pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
+    let listed = |is: &dyn Fn(&Link) -> bool| {
+        let own = links.iter().map(|&link| &gathered.links[link]);
+        let names: Vec<String> = own
+            .filter(|link| is(link))
+            .map(|link| format!("`{}`", link.name))
+            .collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    if let Some(list) = listed(&|link| link.element.child("inertial").is_none()) {
+        model.notes.push(format!(
+            "Without <inertial>: {list}. SDFormat gives each of them 1 kg and 1 kg m^2 about its origin, as here."
+        ));
+    }
+    let is_auto = |link: &Link| {
+        let inertial = link.element.child("inertial");
+        inertial.is_some_and(|own| matches!(own.get("auto"), Some("true" | "1")))
+    };
+    if let Some(list) = listed(&is_auto) {
+        model.notes.push(format!(
+            "The inertia of {list} follows from collision shapes and densities, which are not read: it has no value here."
+        ));
+    }
+}
+
+/// Gravity acts on all links or on none: an error names those on which it does not.
+pub(super) fn gravity(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
+    let files = gathered.files;
+    let is_light = |link: &&usize| {
+        let element = &gathered.links[**link].element;
+        element.child("gravity").is_some() && !flag(files, element, "gravity")
+    };
+    let light: Vec<usize> = links.iter().filter(is_light).copied().collect();
+    if light.len() == links.len() && !light.is_empty() {
+        model.gravity = [0.0; 3];
+        return;
+    }
+    for link in light {
+        let own = &gathered.links[link];
+        let place = own.element.child("gravity").map(|element| &element.place);
+        let message = format!(
+            "gravity does not act on `{}` alone, which can't be said",
+            own.name
+        );
+        let help = "take <gravity> out, or say it of all links";
+        files.report(place.unwrap_or(&own.element.place), message, help);
+    }
+}

@@ -1,0 +1,231 @@
+//! SDFormat, the language of Gazebo, 1.4 to 1.12: links, joints between any two of them, and frames in which poses
+//! are told.
+//!
+//! What a pose means follows "Pose frame semantics" and its proposal on sdformat.org, and the descriptions of the
+//! elements in gazebosim/sdformat: of a link it is told in its model, of a joint in its child, of a `<frame>` in what
+//! it is attached to, of a model in what is around it, wherever nothing else is said. Axes are told in the frame of
+//! their joint. All joints stand at zero in the poses of the file, so that its loops are closed there.
+
+mod couplings;
+mod frames;
+mod gather;
+mod include;
+mod joints;
+mod links;
+mod tree;
+mod value;
+
+use crate::{
+    files::Files,
+    model::Model,
+    options::Options,
+    xml::{self, Element},
+};
+use gather::{Gathered, Owner};
+use include::{Included, Source};
+use value::{flag, several};
+
+/// Parts that only a picture, a sensor or a simulation of contacts needs.
+pub(crate) const SKIPPED: [&str; 13] = [
+    "visual",
+    "collision",
+    "sensor",
+    "material",
+    "light",
+    "gui",
+    "scene",
+    "physics",
+    "actor",
+    "road",
+    "state",
+    "population",
+    "gripper",
+];
+
+/// Acceleration of gravity of a world that says nothing.
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
+
+/// Reads a robot; what is wrong is noted in the files.
+pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let root = xml::parse(files, file, &SKIPPED)?;
+    let version = version(files, &root)?;
+    let mut worlds = root.all("world");
+    let world = worlds.next();
+    if let Some(second) = worlds.next() {
+        let message = "the file has more than one world";
+        files.report(
+            &second.place,
+            message,
+            "put each world into a file of its own",
+        );
+        return None;
+    }
+    let around = world.unwrap_or(&root);
+    let mut model = Model::new("robot");
+    if let Some(world) = world {
+        model.gravity = match world.child("gravity") {
+            Some(own) => several(files, own)?,
+            None => GRAVITY,
+        };
+    }
+    let path = files.path(file);
+    let models = models(files, around, version, &path, &mut model)?;
+    let robot = chosen(files, around, &models, options)?;
+    let name = models[robot].element.get("name").unwrap_or("robot");
+    model.name = name.to_owned();
+    let shown_without = format!("{name}::");
+    let mut gathered = Gathered::new(files, around.place.clone(), version, path, shown_without);
+    for (at, found) in models.into_iter().enumerate() {
+        let owner = match (at == robot, found.is_static) {
+            (true, _) => Owner::Robot,
+            (false, true) => Owner::Ground,
+            (false, false) => Owner::Stranger,
+        };
+        gathered.model(&found.element, found.source, 0, owner)?;
+    }
+    gathered.parts(around, 0, Owner::Robot)?;
+    gathered.frames.resolve(files)?;
+    if !files.is_clean() {
+        return None;
+    }
+    let (edges, axes) = tree::build(&gathered, options, &mut model)?;
+    couplings::read(&gathered, &edges, &axes, &mut model);
+    plugins(&mut gathered, &mut model);
+    files.is_clean().then_some(model)
+}
+
+/// The version of a file; `None` after an error.
+fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
+    let Some((text, place)) = root.attribute("version") else {
+        let help = "write for instance <sdf version=\"1.9\">";
+        files.report(
+            &root.place,
+            "the file does not say its version of SDFormat",
+            help,
+        );
+        return None;
+    };
+    let parts = text.trim().split_once('.');
+    let number = |part: &str| part.parse::<u32>().ok();
+    let found = parts.and_then(|(major, minor)| Some((number(major)?, number(minor)?)));
+    let known = found.filter(|version| ((1, 4)..=(1, 12)).contains(version));
+    if known.is_none() {
+        let message = format!("SDFormat of version `{text}` is not read");
+        let help = "1.4 to 1.12 are: `gz sdf -p FILE` writes a file in the newest that it knows";
+        files.report(place, message, help);
+    }
+    known
+}
+
+/// A model of the world, or of the file.
+struct Found {
+    element: Element,
+    source: Source,
+    is_static: bool,
+}
+
+/// The models of a world, or of the file. What a world includes from elsewhere is
+/// left out, and told.
+fn models(
+    files: &Files,
+    around: &Element,
+    version: (u32, u32),
+    path: &std::path::Path,
+    model: &mut Model,
+) -> Option<Vec<Found>> {
+    let mut all = Vec::new();
+    let mut elsewhere = Vec::new();
+    for child in &around.children {
+        let (element, source) = match child.name.as_str() {
+            "model" => {
+                let source = Source {
+                    version,
+                    from: None,
+                    is_merged: false,
+                };
+                (child.clone(), source)
+            }
+            "include" => match include::read(files, child, &[path.to_owned()]) {
+                Included::Model(model, source) => (*model, source),
+                Included::Elsewhere(uri, place) => {
+                    elsewhere.push((uri, place));
+                    continue;
+                }
+                Included::Error => return None,
+            },
+            _ => continue,
+        };
+        all.push(Found {
+            is_static: flag(files, &element, "static"),
+            element,
+            source,
+        });
+    }
+    if all.iter().all(|found| found.is_static) {
+        if let Some((uri, place)) = elsewhere.first() {
+            include::refuse(files, uri, place);
+            return None;
+        }
+    }
+    if !elsewhere.is_empty() {
+        let list: Vec<String> = elsewhere
+            .iter()
+            .map(|(uri, _)| format!("`{uri}`"))
+            .collect();
+        model.notes.push(format!("Not read: {}.", list.join(", ")));
+    }
+    Some(all)
+}
+
+/// The robot among the models: the one that is named, or the only one that moves.
+fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) -> Option<usize> {
+    let name = |at: usize| models[at].element.get("name").unwrap_or_default();
+    if let Some(wanted) = &options.model {
+        let found = (0..models.len()).find(|&at| name(at) == wanted);
+        if found.is_none() {
+            let near =
+                overact_codegen::diagnostic::did_you_mean(wanted, (0..models.len()).map(name));
+            let help = near.unwrap_or_else(|| "name a <model> of the file".to_owned());
+            files.report(&around.place, format!("there is no model `{wanted}`"), help);
+        }
+        return found;
+    }
+    let moving: Vec<usize> = (0..models.len())
+        .filter(|&at| !models[at].is_static)
+        .collect();
+    match (&moving[..], models.len()) {
+        ([only], _) => Some(*only),
+        // A robot that is static is told as such.
+        ([], 1) => Some(0),
+        ([], _) => {
+            let message = "there is no <model> that moves";
+            let help = "the robot is a <model> that is not static";
+            files.report(&around.place, message, help);
+            None
+        }
+        _ => {
+            let list: Vec<String> = moving.iter().map(|&at| format!("`{}`", name(at))).collect();
+            let message = format!("there are {} models: {}", moving.len(), list.join(", "));
+            let help = format!("say which is the robot: `--model {}`", name(moving[0]));
+            files.report(&around.place, message, help);
+            None
+        }
+    }
+}
+
+/// Plugins drive joints, or do something else: nobody here knows.
+fn plugins(gathered: &mut Gathered<'_>, model: &mut Model) {
+    gathered.plugins.sort();
+    gathered.plugins.dedup();
+    let list: Vec<String> = gathered
+        .plugins
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if !list.is_empty() {
+        model.notes.push(format!(
+            "Plugins are not read, nor which joints they drive: {}.",
+            list.join(", ")
+        ));
+    }
+}

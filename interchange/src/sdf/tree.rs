@@ -1,0 +1,335 @@
+//! A tree of bodies out of joints between any two links: what is left over closes loops.
+//!
+//! A joint that closes a loop keeps its axes: they carry a massless body, which is one with the link that the joint
+//! leads to. Which joints these are changes nothing, as bodies that are one have no order.
+
+use super::{
+    frames::Name,
+    gather::{Gathered, JointItem, Link, Owner},
+    joints::{self, Axis},
+    links,
+};
+use crate::{
+    model::{Body, Closure, ClosureKind, Follow, Model, Pose},
+    options::Options,
+};
+use nalgebra::Point3;
+use std::collections::BTreeMap;
+
+/// The joint of the model that an axis of the file is: by the number of the file's joint, and its element.
+pub(super) type Axes = BTreeMap<(usize, &'static str), usize>;
+
+/// A joint between two links; the ground is none.
+pub(super) struct Edge {
+    pub(super) item: usize,
+    pub(super) ends: [Option<usize>; 2],
+    pub(super) axes: Vec<Axis>,
+}
+
+/// The bodies of the model, and where its joints come from; `None` after an error.
+pub(super) fn build(
+    gathered: &Gathered<'_>,
+    options: &Options,
+    model: &mut Model,
+) -> Option<(Vec<Edge>, Axes)> {
+    let links = gathered.links.iter().enumerate();
+    let own: Vec<usize> = links
+        .filter(|(_, link)| link.owner == Owner::Robot)
+        .map(|(at, _)| at)
+        .collect();
+    let edges = edges(gathered)?;
+    let mut tree = Tree {
+        gathered,
+        edges: &edges,
+        at: vec![Vec::new(); gathered.links.len() + 1],
+        bodies: vec![None; gathered.links.len()],
+        used: vec![false; edges.len()],
+        cuts: Vec::new(),
+        axes: Axes::new(),
+    };
+    for (at, edge) in edges.iter().enumerate() {
+        for end in edge.ends {
+            tree.at[node(end)].push(at);
+        }
+    }
+    tree.grow(None, model);
+    for &link in &own {
+        if tree.bodies[link].is_none() {
+            let base = tree.base_of(link);
+            tree.float(base, options, model)?;
+            tree.grow(Some(base), model);
+        }
+    }
+    for cut in std::mem::take(&mut tree.cuts) {
+        tree.close(cut, model);
+    }
+    let axes = tree.axes;
+    links::notes(gathered, &own, model);
+    links::gravity(gathered, &own, model);
+    gathered.files.is_clean().then_some((edges, axes))
+}
+
+/// The number of a link among all and the ground.
+fn node(link: Option<usize>) -> usize {
+    link.map_or(0, |link| link + 1)
+}
+
+fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
+    let mut edges = Vec::new();
+    for (at, item) in gathered.joints.iter().enumerate() {
+        if item.owner == Owner::Stranger || joints::is_coupling(item) {
+            continue;
+        }
+        let ends = [end(gathered, &item.parent)?, end(gathered, &item.child)?];
+        if item.child.text == "world" {
+            let message = format!("the child of the joint `{}` is the world", item.name);
+            let help = "the world moves nowhere: write it as <parent>";
+            gathered.files.report(&item.child.place, message, help);
+            continue;
+        }
+        if ends[0] == ends[1] {
+            let message = format!("the joint `{}` joins a body to itself", item.name);
+            let help = "name two links that are not the same, nor both fixed in the world";
+            gathered.files.report(&item.element.place, message, help);
+            continue;
+        }
+        let Some(axes) = joints::axes(gathered, item) else {
+            continue;
+        };
+        edges.push(Edge {
+            item: at,
+            ends,
+            axes,
+        });
+    }
+    gathered.files.is_clean().then_some(edges)
+}
+
+/// The link of a joint's end, `Some(None)` for the ground.
+pub(super) fn end(gathered: &Gathered<'_>, name: &Name) -> Option<Option<usize>> {
+    let frame = gathered.frames.named(gathered.files, name)?;
+    let link = gathered.frames.link(gathered.files, frame, name)?;
+    if link.is_some_and(|link| gathered.links[link].owner == Owner::Stranger) {
+        let message = format!("`{}` is of another model of the world", name.text);
+        let help = "put both into one model: one of a world is read, without the others";
+        gathered.files.report(&name.place, message, help);
+        return None;
+    }
+    Some(link)
+}
+
+struct Tree<'t, 'f> {
+    gathered: &'t Gathered<'f>,
+    edges: &'t [Edge],
+    /// The edges of the ground and of each link.
+    at: Vec<Vec<usize>>,
+    /// The body of each link.
+    bodies: Vec<Option<usize>>,
+    used: Vec<bool>,
+    /// Edges between bodies that are there.
+    cuts: Vec<usize>,
+    axes: Axes,
+}
+
+impl Tree<'_, '_> {
+    fn link(&self, link: usize) -> &Link {
+        &self.gathered.links[link]
+    }
+
+    fn body(&self, link: Option<usize>) -> Option<usize> {
+        link.map_or(Some(0), |link| self.bodies[link])
+    }
+
+    fn frame(&self, link: Option<usize>) -> usize {
+        link.map_or(0, |link| self.link(link).frame)
+    }
+
+    /// All bodies that joints lead to, depth first, in the order of the file.
+    fn grow(&mut self, from: Option<usize>, model: &mut Model) {
+        let mut open = vec![from];
+        while let Some(at) = open.pop() {
+            let mut next = Vec::new();
+            for edge in self.at[node(at)].clone() {
+                if std::mem::replace(&mut self.used[edge], true) {
+                    continue;
+                }
+                let ends = self.edges[edge].ends;
+                let is_against = ends[1] == at;
+                let other = if is_against { ends[0] } else { ends[1] };
+                match (self.body(other), other) {
+                    (None, Some(link)) => {
+                        let body = self.hang(edge, is_against, model);
+                        self.fill(body, link, model);
+                        next.push(other);
+                    }
+                    _ => self.cuts.push(edge),
+                }
+            }
+            open.extend(next.into_iter().rev());
+        }
+    }
+
+    /// The bodies that the axes of an edge carry, all of them in the place of the last; gone along from its child to
+    /// its parent all motions are those of the other way in the opposite order.
+    fn hang(&mut self, edge: usize, is_against: bool, model: &mut Model) -> usize {
+        let Edge { item, ends, axes } = &self.edges[edge];
+        let [carrier, carried] = match is_against {
+            true => [ends[1], ends[0]],
+            false => *ends,
+        };
+        let frames = &self.gathered.frames;
+        let to = self.frame(carried);
+        let mut placement = frames.seen(to, self.frame(carrier));
+        let joint_in = frames.seen(self.gathered.joints[*item].frame, to);
+        let mut parent = self.body(carrier).unwrap_or(0);
+        let mut order: Vec<&Axis> = axes.iter().collect();
+        if is_against && axes.iter().all(|axis| axis.lead.is_none()) {
+            order.reverse();
+        }
+        let name = carried.map_or("", |link| self.gathered.links[link].name.as_str());
+        for (at, axis) in order.iter().enumerate() {
+            let mut joint = axis.joint.clone();
+            let direction = joint_in.rotation * joint.axis;
+            joint.axis = if is_against { -direction } else { direction };
+            joint.at = Point3::from(joint_in.translation.vector);
+            if axis.lead.is_none() {
+                self.axes.insert((*item, axis.element), model.joints.len());
+            }
+            model.joints.push(joint);
+            let is_last = at + 1 == order.len();
+            let own = match is_last {
+                true => name.to_owned(),
+                false => format!("{name}_{}", at + 1),
+            };
+            let joint = Some(model.joints.len() - 1);
+            parent = push(model, own, parent, placement, joint);
+            placement = Pose::identity();
+        }
+        if order.is_empty() {
+            parent = push(model, name.to_owned(), parent, placement, None);
+        }
+        self.follow(*item, axes, model);
+        parent
+    }
+
+    /// The slide of a screw follows its turn, which was added behind it.
+    fn follow(&self, item: usize, axes: &[Axis], model: &mut Model) {
+        let Some(lead) = axes.iter().find_map(|axis| axis.lead) else {
+            return;
+        };
+        let Some(&turn) = self.axes.get(&(item, "axis")) else {
+            return;
+        };
+        model.joints[turn - 1].follow = Some(Follow {
+            joint: turn,
+            factor: lead,
+            offset: 0.0,
+        });
+    }
+
+    /// Gives a body what its link has.
+    fn fill(&mut self, body: usize, link: usize, model: &mut Model) {
+        let (inertia, is_unknown) = links::inertia(self.gathered, self.link(link));
+        let own = &mut model.bodies[body];
+        (own.inertia, own.has_unknown_inertia) = (inertia, is_unknown);
+        own.place = Some(self.link(link).element.place.clone());
+        self.bodies[link] = Some(body);
+    }
+
+    /// The first link of those that hang together with one that no joint carries, or the link itself.
+    fn base_of(&self, link: usize) -> usize {
+        let (mut seen, mut open) = (vec![false; self.bodies.len()], vec![link]);
+        seen[link] = true;
+        while let Some(at) = open.pop() {
+            for &edge in &self.at[at + 1] {
+                for other in self.edges[edge].ends.into_iter().flatten() {
+                    if !std::mem::replace(&mut seen[other], true) {
+                        open.push(other);
+                    }
+                }
+            }
+        }
+        let is_carried = |link: usize| {
+            let own = self.at[link + 1].iter();
+            own.into_iter()
+                .any(|&edge| self.edges[edge].ends[1] == Some(link))
+        };
+        let mut all = (0..seen.len()).filter(|&link| seen[link] && !is_carried(link));
+        all.next().unwrap_or(link)
+    }
+
+    /// Links that nothing holds: they float, or are fixed where the user wants it.
+    fn float(&mut self, base: usize, options: &Options, model: &mut Model) -> Option<()> {
+        let link = self.link(base);
+        if !options.fix_base {
+            let message = format!(
+                "no joint leads from the world to `{}`: it floats",
+                link.name
+            );
+            let help = "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands, and so does a joint of type fixed whose <parent> is world";
+            self.gathered
+                .files
+                .report(&link.element.place, message, help);
+            return None;
+        }
+        model.notes.push(format!(
+            "No joint leads from the world to `{}`; it is fixed here where it stands.",
+            link.name
+        ));
+        let placement = self.gathered.frames.seen(link.frame, 0);
+        let body = push(model, link.name.clone(), 0, placement, None);
+        self.fill(body, base, model);
+        Some(())
+    }
+
+    /// A joint between two bodies that are there.
+    fn close(&mut self, edge: usize, model: &mut Model) {
+        let [parent, child] = self.edges[edge].ends;
+        let item: &JointItem = &self.gathered.joints[self.edges[edge].item];
+        let (Some(from), Some(to)) = (self.body(parent), self.body(child)) else {
+            return;
+        };
+        let (first, at) = match self.edges[edge].axes.is_empty() {
+            true => {
+                let seen = self
+                    .gathered
+                    .frames
+                    .seen(self.frame(child), self.frame(parent));
+                (from, seen)
+            }
+            false => {
+                let body = self.hang(edge, false, model);
+                model.bodies[body].name.clear();
+                (body, Pose::identity())
+            }
+        };
+        model.closures.push(Closure {
+            name: item.name.clone(),
+            kind: ClosureKind::Weld {
+                bodies: [first, to],
+                at: [at, Pose::identity()],
+            },
+            place: item.element.place.clone(),
+        });
+    }
+}
+
+/// Adds a body without mass.
+fn push(
+    model: &mut Model,
+    name: String,
+    parent: usize,
+    placement: Pose,
+    joint: Option<usize>,
+) -> usize {
+    model.bodies.push(Body {
+        name,
+        parent,
+        placement,
+        place: None,
+        joint,
+        inertia: None,
+        has_unknown_inertia: false,
+    });
+    model.bodies.len() - 1
+}

@@ -1,0 +1,110 @@
+//! Values of SDFormat, which stand in the texts of elements.
+
+use crate::{
+    files::{Files, Place},
+    geometry::exact,
+    model::Pose,
+    xml::{Element, numbers},
+};
+use nalgebra::{Rotation3, Translation3};
+
+/// Limits that are as large are none: SDFormat up to 1.8 writes ±1e16 where it means no limit.
+const NO_LIMIT: f64 = 1e15;
+
+/// Numbers that are as large are slips, and their squares would soon be none.
+const LARGEST: f64 = 1e15;
+
+/// The text of an element in another, and its place; none where it is absent or empty.
+pub(super) fn text<'e>(of: &'e Element, tag: &str) -> Option<(&'e str, &'e Place)> {
+    let (text, place) = &of.child(tag)?.text;
+    (!text.is_empty()).then_some((text.as_str(), place))
+}
+
+/// So many numbers in an element; `None` after an error.
+pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Option<[f64; N]> {
+    let (text, place) = &element.text;
+    match numbers(text).map(<[f64; N]>::try_from) {
+        Some(Ok(values)) if values.iter().all(|value| value.abs() < LARGEST) => Some(values),
+        Some(Ok(_)) => {
+            let message = format!("<{}> has a number beyond {LARGEST:e}", element.name);
+            files.report(place, message, "give it in m, rad, kg and kg m^2");
+            None
+        }
+        _ => {
+            let message = format!("<{}> has to be {N} finite numbers", element.name);
+            files.report(place, message, "write numbers with blanks between them");
+            None
+        }
+    }
+}
+
+/// The number of an element in another; the default where it is absent or, after an error, no number.
+pub(super) fn number(files: &Files, of: &Element, tag: &str, default: f64) -> f64 {
+    let found = of.child(tag).map(|element| several(files, element));
+    found.map_or(default, |values| values.map_or(default, |[value]| value))
+}
+
+/// A limit; none where there is none, or one that nothing reaches.
+pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
+    let (text, place) = text(of, tag)?;
+    match text.parse::<f64>() {
+        Ok(value) if !value.is_nan() => (value.abs() < NO_LIMIT).then_some(value),
+        _ => {
+            let message = format!("<{tag}> is no limit");
+            files.report(place, message, "write a number, or inf for none");
+            None
+        }
+    }
+}
+
+/// Whether an element in another says yes; no where it is absent or, after an error, something else.
+pub(super) fn flag(files: &Files, of: &Element, tag: &str) -> bool {
+    match text(of, tag) {
+        None | Some(("false" | "0" | "False", _)) => false,
+        Some(("true" | "1" | "True", _)) => true,
+        Some((other, place)) => {
+            let message = format!("`{other}` is neither true nor false");
+            files.report(place, message, "write true or false");
+            false
+        }
+    }
+}
+
+/// The pose of `<pose>`, without the frame that it is told in.
+pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
+    let Some(element) = element.filter(|element| !element.text.0.is_empty()) else {
+        return Pose::identity();
+    };
+    let said = match element.get("rotation_format") {
+        Some("quat_xyzw") => several(files, element).map(|[x, y, z, i, j, k, w]| {
+            let rotation = exact::quaternion([w, i, j, k]);
+            if rotation.is_none() {
+                let message = "a quaternion of length zero";
+                files.report(&element.text.1, message, "write 0 0 0 1 for no rotation");
+            }
+            ([x, y, z], rotation.unwrap_or_default())
+        }),
+        None | Some("euler_rpy") => several(files, element).map(|[x, y, z, r, p, q]| {
+            let in_degrees = matches!(element.get("degrees"), Some("true" | "1"));
+            let angle = |v: f64| if in_degrees { v.to_radians() } else { v };
+            ([x, y, z], exact::roll_pitch_yaw([r, p, q].map(angle)))
+        }),
+        Some(other) => {
+            let message = format!("`{other}` is no format of rotations");
+            let help = "write euler_rpy or quat_xyzw";
+            files.report(&element.place, message, help);
+            None
+        }
+    };
+    let (at, rotation) = said.unwrap_or(([0.0; 3], Rotation3::identity()));
+    Pose::from_parts(Translation3::from(at), rotation)
+}
+
+/// The frame that an element's pose is told in, where it names one: `relative_to`, or `frame` before 1.7.
+pub(super) fn told_in(element: Option<&Element>) -> Option<(&str, &Place)> {
+    let pose = element?;
+    let named = pose
+        .attribute("relative_to")
+        .or_else(|| pose.attribute("frame"));
+    named.filter(|(name, _)| !name.is_empty())
+}

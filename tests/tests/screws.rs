@@ -1,0 +1,156 @@
+//! Helical joints: the power of their motors, what is compiled beside what is evaluated, and skeletons and chains that
+//! have them, beside the numeric reference.
+
+use nalgebra::DVector;
+use overact_codegen::{Effort, Request, Source};
+use overact_compiled::friction::{SCREW, ScrewArm};
+use overact_tests::reference::energy::total_energy;
+use overact_tests::reference::states::frictionless;
+use overact_tests::reference::trajectory;
+use overact_tests::support::conversion::reference;
+use overact_tests::support::expected::Expected;
+use overact_tests::support::library::workspace;
+use overact_tests::support::sample::samples;
+use overact_tests::support::whole::against_reference;
+use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served, model_with};
+use overact_tier::by_tier;
+
+const TOLERANCE: f64 = 1e-9;
+/// States of each robot in the default tier and in the full one.
+const STATES: [usize; 2] = [4, 60];
+
+/// The power of the motors is the change of the energy, which comes from positions and velocities alone.
+#[test]
+fn the_power_of_motors_of_screws_is_the_change_of_the_energy() -> Result<(), Failure> {
+    let text = SCREW.replace("known = \"2 N m * cos(q) + 0.1 N m/rad * q\"\n", "");
+    let source = Source::new("screw_arm.toml", text);
+    let model = model_with(&source, &Request::with_effort(Effort::None))?;
+    let mechanism = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, mechanism);
+    let columns = expected.parameters();
+    for sample in samples(&expected.mechanism, &columns, by_tier(STATES), 17, false)? {
+        let chi = frictionless(&expected.mechanism, &sample.all_parameters);
+        let energy =
+            |state: &_| DVector::from_element(1, total_energy(&expected.mechanism, state, &chi));
+        let (change, _) = trajectory::derivatives(&expected.mechanism, &sample.state, energy)?;
+        let sample = Sample {
+            parameters: columns.iter().map(|&at| chi[at]).collect(),
+            ..sample.clone()
+        };
+        let torques = Evaluated(&model).call("inverse_dynamics", &sample)?;
+        let powers: f64 = torques
+            .iter()
+            .zip(sample.state.twist.iter())
+            .map(|(t, v)| t * v)
+            .sum();
+        let scale = powers.abs().max(change[0].abs()).max(1.0);
+        assert!(
+            (powers - change[0]).abs() < TOLERANCE * scale,
+            "{powers} {change}"
+        );
+    }
+    Ok(())
+}
+
+/// What is generated is what is evaluated, to rounding: the compiled robot takes the same lead.
+#[test]
+fn compiled_screws_move_as_evaluated_ones() -> Result<(), Failure> {
+    let source = Source::new("screw_arm.toml", SCREW);
+    let model = model_with(&source, &Request::with_effort(Effort::None))?;
+    let mechanism = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, mechanism);
+    let columns = expected.parameters();
+    for sample in samples(&expected.mechanism, &columns, by_tier(STATES), 3, false)? {
+        let [compiled, evaluated] = [
+            Served(&ScrewArm).call("inverse_dynamics", &sample)?,
+            Evaluated(&model).call("inverse_dynamics", &sample)?,
+        ];
+        let scale = evaluated.amax().max(1.0);
+        assert!((compiled - evaluated).amax() < 1e-12 * scale);
+    }
+    Ok(())
+}
+
+/// A tree of a turn and a screw, with a branch, and a drive between two of its bodies.
+fn driven(drive: &str, home: &str) -> String {
+    format!(
+        r#"name = "Screws"
+gravity = ["1 m/s^2", "-2 m/s^2", "-9 m/s^2"]
+[[leg.tree.joint]]
+name = "a"
+type = "revolute"
+alpha = "30 deg"
+d = "0.1 m"
+actuated = true
+[[leg.tree.joint]]
+name = "b"
+type = "helical"
+pitch = "0.2 m"
+gamma = "40 deg"
+alpha = "-70 deg"
+d = "0.2 m"
+theta = "q + 25 deg"
+r = "0.1 m"
+actuated = true
+[[leg.tree.joint]]
+name = "c"
+type = "revolute"
+alpha = "80 deg"
+d = "0.15 m"
+actuated = true
+[leg.drive]
+base = {{ at = ["0.05 m", "-0.3 m", "0.1 m"], rotation = ["15 deg", "40 deg", "-60 deg"] }}
+[[leg.drive.joint]]
+name = "one"
+type = "revolute"
+alpha = "90 deg"
+theta = "q + 90 deg"
+[[leg.drive.joint]]
+name = "two"
+type = "revolute"
+alpha = "90 deg"
+theta = "q + 90 deg"
+[[leg.drive.joint]]
+name = "three"
+alpha = "90 deg"
+{drive}
+[leg.drive.end]
+type = "point"
+body = "c"
+at = ["0.3 m", "0.2 m", "-0.15 m"]
+[[place]]
+name = "tree"
+shape = "tree"
+home = {{ b = "50 deg", c = "20 deg" }}
+[[place]]
+name = "drive"
+shape = "drive"
+home = {{ three = {home} }}
+"#
+    )
+}
+
+#[test]
+fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
+    let text = driven("type = \"prismatic\"\nactuated = true", "\"0.6 m\"");
+    let source = Source::new("screws.toml", text);
+    let failures = against_reference(source, by_tier(STATES), [TOLERANCE; 2])?;
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    Ok(())
+}
+
+/// Of this screw the slide follows from a distance, and no equation of sines has its angle; of the other the angle
+/// follows from the orientation of a rod, and no equation its slide: Newton's method finds both.
+#[test]
+fn chains_are_solved_for_screws() -> Result<(), Failure> {
+    for drive in ["actuated = true", "parameters = [\"fv\", \"m\", \"mx\"]"] {
+        let text = driven(
+            &format!("type = \"helical\"\npitch = \"0.5 m\"\n{drive}"),
+            "\"430 deg\"",
+        );
+        let source = Source::new("screws.toml", text);
+        let failures = against_reference(source, by_tier(STATES), [TOLERANCE; 2])?;
+        assert!(failures.is_empty(), "{drive}\n{}", failures.join("\n"));
+    }
+    Ok(())
+}
