@@ -106,7 +106,7 @@ impl<'a> Robot<'a> {
                 };
                 let own = &self.mechanism.legs[leg];
                 self.arena.enter(&own.name);
-                let u = closure.velocities(&moved);
+                let u = self.rates_of_leg(state, closure, twist, &moved);
                 let bias = end_bias(self.arena, own, &state.frames, &state.rates, &u);
                 let along = -closure.blocked_acceleration(self.arena, at, &moved, &bias);
                 self.arena.enter("");

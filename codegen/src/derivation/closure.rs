@@ -142,6 +142,67 @@ impl<'a> LegClosure<'a> {
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
 
+    /// Velocity of the leg's end and angular velocity, in the leg's axes, per coordinate of which it is told how they
+    /// move what the leg ends on: velocity of its origin and angular velocity.
+    fn ends(&self, partials: &[[Vector3<'a>; 2]]) -> Vec<[Vector3<'a>; 2]> {
+        let end = |[velocity, turning]: &[Vector3<'a>; 2]| {
+            let linear = *velocity + turning.cross(self.arm);
+            [self.turned_in(linear), self.turned_in(*turning)]
+        };
+        partials.iter().map(end).collect()
+    }
+
+    /// The velocity of the leg's end per independent coordinate, or per coordinate of which it is told how they move what
+    /// the leg ends on, in the axes in which that is seen.
+    pub(super) fn end_velocities(
+        &self,
+        arena: &'a Arena,
+        partials: Option<&[[Vector3<'a>; 2]]>,
+    ) -> Vec<Vector3<'a>> {
+        match partials {
+            Some(partials) => {
+                let moved =
+                    |[velocity, turning]: &[Vector3<'a>; 2]| *velocity + turning.cross(self.arm);
+                partials.iter().map(moved).collect()
+            }
+            None => {
+                let columns = self.directions.columns(arena, self.arm).into_iter();
+                columns.map(|[velocity, _]| velocity).collect()
+            }
+        }
+    }
+
+    /// The joints' rates per such coordinate: all rows share the velocities of the leg's end.
+    #[must_use]
+    pub(super) fn rows_on(&self, partials: &[[Vector3<'a>; 2]]) -> Rows<'a> {
+        let ends = self.ends(partials);
+        let row = |wrench: &Wrench<'a>| {
+            let [force, moment] =
+                [wrench.force, wrench.moment].map(|part| part.scaled(wrench.factor));
+            let on =
+                |[linear, angular]: &[Vector3<'a>; 2]| force.dot(*linear) + moment.dot(*angular);
+            ends.iter().map(on).collect()
+        };
+        self.wrenches.iter().map(row).collect()
+    }
+
+    /// The forces s on the u on such coordinates, as one force at the leg's end.
+    #[must_use]
+    pub(super) fn project_on(
+        &self,
+        partials: &[[Vector3<'a>; 2]],
+        forces: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        let parts = self.wrenches.iter().zip(forces);
+        let zero = Vector3::zero(self.determinant.arena());
+        // The products of factors and forces are had for the rows anyway.
+        let force = parts.fold(zero, |sum, (w, s)| {
+            sum + w.force.scaled(w.factor).scaled(*s)
+        });
+        let ends = self.ends(partials).into_iter();
+        ends.map(|[linear, _]| force.dot(linear)).collect()
+    }
+
     /// ∂u_i/∂v times a factor that divisors of the row vanish in.
     #[must_use]
     pub(super) fn reduced_row(&self, rate: usize, factor: Expr<'a>) -> Vec<Expr<'a>> {

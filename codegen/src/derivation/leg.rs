@@ -8,7 +8,7 @@ use super::frames::LegFrames;
 use super::platform::{PlatformMotion, PlatformPose};
 use super::rates::Rates;
 use crate::cas::{Arena, Expr, Vector3};
-use crate::mechanism::Leg;
+use crate::mechanism::{End, Leg};
 
 /// A leg in a derivation.
 #[derive(Debug)]
@@ -28,6 +28,9 @@ pub struct LegState<'a> {
     /// Acceleration of the ground less gravity, in the axes in which the closure sees what the leg ends on and in
     /// those of the leg, where the end's acceleration is taken so.
     pub(super) ground: Option<[Vector3<'a>; 2]>,
+    /// The ground's acceleration less gravity in the axes in which the closure sees what the leg ends on, where masses at
+    /// the leg's end are told there; `None` of a leg that stands on a moving body.
+    pub(super) lift: Option<Vector3<'a>>,
     /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body those of the leg follow that
     /// carries it, whose quasi-velocities move its bodies, too.
     pub rows: Rows<'a>,
@@ -43,6 +46,22 @@ impl<'a> LegState<'a> {
             },
             None => end,
         }
+    }
+
+    /// The acceleration less gravity of a leg's end, from that of what it ends on, [`less gravity`](Self::less_gravity)
+    /// where it is taken so: where masses there are told as those of a point of it.
+    pub(super) fn end_less_gravity(
+        &self,
+        leg: &Leg,
+        end: &PlatformMotion<'a>,
+    ) -> Option<Vector3<'a>> {
+        let (closure, lift) = (self.closure.as_ref()?, self.lift?);
+        let Some(End::Point { along, .. }) = &leg.end else {
+            return None;
+        };
+        let there = end.point_acceleration(closure.at, closure.arm);
+        let is_less = self.ground.is_some();
+        (*along == [true; 3]).then(|| if is_less { there } else { there + lift })
     }
 
     /// The acceleration of the leg's end at u̇ = 0, less gravity where that of what it ends on is.

@@ -4,7 +4,7 @@ use super::body::BodyMotion;
 use super::carried::CarriedBody;
 use super::names::Accelerations;
 use super::platform::PlatformMotion;
-use crate::cas::Expr;
+use crate::cas::{Expr, Vector3};
 
 /// Velocities and accelerations of the whole robot.
 #[derive(Debug, Clone)]
@@ -17,6 +17,9 @@ pub struct RobotMotion<'a> {
     pub bodies: Vec<Vec<BodyMotion<'a>>>,
     /// Those bodies of every leg that move with the platform.
     pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
+    /// Of every leg the acceleration of its end less gravity, where masses there are told as those of a point of what
+    /// it ends on.
+    pub(super) ends: Vec<Option<Vector3<'a>>>,
     /// The platform.
     pub platform: Option<CarriedBody<'a>>,
 }

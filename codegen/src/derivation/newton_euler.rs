@@ -33,6 +33,8 @@ impl<'a> Robot<'a> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
         let mut free = vec![self.arena.zero(); self.free.len()];
+        let partials = self.aside.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|aside| aside.partials(self.arena));
         let mut hung = Hung::nothing(self.arena, &self.mechanism.legs);
         let of_legs = self.forces_of_legs(motion, values, &mut hung)?.into_iter();
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
@@ -45,10 +47,16 @@ impl<'a> Robot<'a> {
             let state = &self.legs[index];
             let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
             match at_end.filter(|_| self.platform.is_some() || self.at_end) {
-                Some(closure) if self.aside.is_some() => {
-                    add(&mut free, closure.project_at_end(&forces));
+                Some(closure) => {
+                    let on_ends = partials.as_ref();
+                    match on_ends.map(|partials| closure.project_on(partials, &forces)) {
+                        Some(own) => add(&mut total, own),
+                        None if self.aside.is_some() => {
+                            add(&mut free, closure.project_at_end(&forces));
+                        }
+                        None => add(&mut total, closure.project_at_end(&forces)),
+                    }
                 }
-                Some(closure) => add(&mut total, closure.project_at_end(&forces)),
                 None => {
                     let rows = state.rows[..forces.len()].to_vec();
                     add(&mut total, self.combine(&rows, &forces));

@@ -97,6 +97,12 @@ impl<'a> Robot<'a> {
                 if let Some(body) = &motion.carried[leg][joint] {
                     return self.project_carried(projection, body, symbol);
                 }
+                let is_at_end = joint + 1 == self.mechanism.legs[leg].joints.len();
+                if let Some(acceleration) = motion.ends[leg].filter(|_| is_at_end)
+                    && symbol == StandardParameter::M
+                {
+                    return self.project_end(projection, leg, acceleration);
+                }
                 let body = &motion.bodies[leg][joint];
                 let forces = body.project(body.unit_wrench(self.arena, symbol));
                 self.project_leg(projection, leg, &forces)
@@ -113,6 +119,25 @@ impl<'a> Robot<'a> {
                 let body = motion.platform.as_ref();
                 body.map_or_else(Vec::new, |b| self.project_carried(projection, b, symbol))
             }
+        }
+    }
+
+    /// The column of a mass at a leg's end, of its acceleration less gravity.
+    fn project_end(
+        &self,
+        projection: &Projection<'a>,
+        leg: usize,
+        acceleration: Vector3<'a>,
+    ) -> Vec<Expr<'a>> {
+        let Some(closure) = &self.legs[leg].closure else {
+            return Vec::new();
+        };
+        let partials = self.aside.as_ref().map(|aside| aside.partials(self.arena));
+        let velocities = closure.end_velocities(self.arena, partials.as_deref());
+        let forces: Vec<Expr<'a>> = velocities.iter().map(|v| acceleration.dot(*v)).collect();
+        match projection.on_platform {
+            true => forces,
+            false => self.combine(&projection.platform, &forces),
         }
     }
 

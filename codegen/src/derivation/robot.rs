@@ -11,13 +11,14 @@ use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
 use super::leg::LegState;
+use super::linear::apply;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
 use super::orientation::{Orientation, Seat};
 use super::parasitic::Aside;
 use super::path::{Known, Path, orientation, seats};
-use super::platform::PlatformPose;
+use super::platform::{PlatformMotion, PlatformPose};
 use super::rates::Rates;
 use super::selection::Formulation;
 use super::underivable::Underivable;
@@ -51,6 +52,10 @@ pub struct Robot<'a> {
     pub(super) own_axes: bool,
     /// Whether legs that end in a point lend masses there to what they end on.
     pub(super) lends: bool,
+    /// Whether rows of legs on a platform that moves aside share the velocities of the legs' ends.
+    pub(super) by_ends: bool,
+    /// Whether rates of legs are taken from the independent rates by the rows of their reduced Jacobians.
+    by_rows: bool,
     /// Conditions for the model to have a value.
     pub guards: Vec<Guard<'a>>,
     /// The motions that were asked for, whose quantities are named when all is derived.
@@ -96,6 +101,8 @@ impl<'a> Robot<'a> {
             at_end: formulation.at_end,
             own_axes: formulation.own_axes,
             lends: formulation.lends,
+            by_ends: formulation.by_ends,
+            by_rows: formulation.by_rows,
             guards: Vec::new(),
             motions: RefCell::default(),
         };
@@ -147,17 +154,20 @@ impl<'a> Robot<'a> {
         )
         .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, platform.is_some());
-        let ground = seat
-            .as_ref()
-            .filter(|_| formulation.weighted && leg.base_body.is_none());
-        let ground = ground.and_then(|seat| {
-            let gravity = Vector3::constant(arena, mechanism.gravity);
-            let level = |axes: &Orientation| {
-                let level = Orientation::default().relative(axes, arena, configuration)?;
-                Some(-(level * gravity))
-            };
-            Some([level(&seat.axes)?, level(&frames.orientation)?])
-        });
+        let gravity = Vector3::constant(arena, mechanism.gravity);
+        let level = |axes: &Orientation| {
+            let level = Orientation::default().relative(axes, arena, configuration)?;
+            Some(-(level * gravity))
+        };
+        let seat_on_ground = seat.as_ref().filter(|_| leg.base_body.is_none());
+        let ground = seat_on_ground.filter(|_| formulation.weighted);
+        let ground =
+            ground.and_then(|seat| Some([level(&seat.axes)?, level(&frames.orientation)?]));
+        let lift = match &seat {
+            _ if leg.base_body.is_some() || !formulation.masses_at_ends => None,
+            Some(seat) => level(&seat.axes),
+            None => Some(-gravity),
+        };
         let centres = match formulation.meeting {
             true => centres(leg, &rates),
             false => Vec::new(),
@@ -194,6 +204,7 @@ impl<'a> Robot<'a> {
             platform,
             closure,
             ground,
+            lift,
             rows,
         });
         arena.enter("");
@@ -202,14 +213,18 @@ impl<'a> Robot<'a> {
 
     /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
     fn follow_independent(&mut self) {
+        let partials = self.aside.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|aside| aside.partials(self.arena));
         for index in 0..self.legs.len() {
             let leg = &self.mechanism.legs[index];
             self.arena.enter(&leg.name);
-            let rows = std::mem::take(&mut self.legs[index].rows);
-            let rows: Rows<'a> = rows
-                .into_iter()
-                .map(|row| self.on_independent(row))
-                .collect();
+            let rows = match (&self.legs[index].closure, &partials) {
+                (Some(closure), Some(partials)) => closure.rows_on(partials),
+                _ => {
+                    let rows = std::mem::take(&mut self.legs[index].rows).into_iter();
+                    rows.map(|row| self.on_independent(row)).collect()
+                }
+            };
             name_rows(&rows, leg, &self.twist);
             self.legs[index].rows = rows;
         }
@@ -317,6 +332,7 @@ impl<'a> Robot<'a> {
             u_dot: vec![],
             bodies: vec![],
             carried: vec![],
+            ends: vec![],
             platform: None,
         };
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
@@ -331,7 +347,7 @@ impl<'a> Robot<'a> {
             };
             let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {
                 (Some(closure), Some(platform)) => {
-                    let u = closure.velocities(platform);
+                    let u = self.rates_of_leg(state, closure, twist, platform);
                     name_rates(leg, &u, "rate");
                     let bias = state.bias(self.arena, leg, &u);
                     let labels = accelerations.labels(leg, "a_on_f");
@@ -355,6 +371,10 @@ impl<'a> Robot<'a> {
                 (&u, &u_dot),
                 &base,
             )?;
+            let end = own.as_ref().or(platform.as_ref());
+            motion
+                .ends
+                .push(end.and_then(|end| state.end_less_gravity(leg, end)));
             motion.u.push(u);
             motion.u_dot.push(u_dot);
             let mounts = Mount::of_leg(self.arena, leg);
@@ -371,6 +391,20 @@ impl<'a> Robot<'a> {
             accelerations,
         });
         Some(motion)
+    }
+
+    /// The quasi-velocities of a leg: from the velocity of what it ends on, or from the independent rates.
+    pub(super) fn rates_of_leg(
+        &self,
+        state: &LegState<'a>,
+        closure: &LegClosure<'a>,
+        twist: &[Expr<'a>],
+        end: &PlatformMotion<'a>,
+    ) -> Vec<Expr<'a>> {
+        match self.by_rows {
+            false => closure.velocities(end),
+            true => apply(&state.rows[..closure.wrenches.len()].to_vec(), twist),
+        }
     }
 
     /// J_p^inv, n x r: the reduced Jacobian's rows of the actuated joints.

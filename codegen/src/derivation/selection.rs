@@ -53,6 +53,15 @@ pub struct Formulation {
     /// Whether legs that end in a point lend masses there to what they end on, which leaves their last bodies fewer
     /// forces.
     pub lends: bool,
+    /// Whether what the joints of legs on a platform that moves aside are per independent coordinate is told of the
+    /// velocities of the legs' ends, which all joints of a leg share, rather than by way of the platform's six components.
+    pub by_ends: bool,
+    /// Whether rates of legs are taken from the independent rates by the rows of the reduced Jacobians, rather than
+    /// from the velocities of what the legs end on.
+    pub by_rows: bool,
+    /// Whether the masses of last bodies whose frames stand at the ends of legs are masses at points of what the legs
+    /// end on, in the identification model.
+    pub masses_at_ends: bool,
 }
 
 /// A column as a linear combination of other columns.

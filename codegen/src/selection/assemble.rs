@@ -1,6 +1,6 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
-use super::formulation;
+use super::formulation::{self, Change};
 use super::search::{Search, is_cheaper};
 use crate::cas::Arena;
 use crate::derivation::{DynamicsBy, JointsBy, MotionInput, Selection, Underivable, derive};
@@ -59,8 +59,20 @@ impl Assembler<'_> {
         let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(function) / 100;
         let worth = |form: &&Form| form.is_worth || form.operations <= most;
+        let mut searched: Vec<Form> = Vec::new();
+        for form in forms.iter().filter(worth) {
+            let Some((refined, [first, least])) = self.refined(function, from, form)? else {
+                searched.push(form.clone());
+                continue;
+            };
+            if least * 100 > first * CLEARLY {
+                searched.push(form.clone());
+            }
+            searched.extend(self.in_other_axes(function, from, (&refined, least))?);
+            searched.push(refined);
+        }
         let mut best: Option<Program> = None;
-        for Form { selection, .. } in forms.iter().filter(worth) {
+        for Form { selection, .. } in &searched {
             let form = Assembler { selection, ..*self }.program(function, from)?;
             if best.as_ref().is_none_or(|best| is_cheaper(&form, best)) {
                 best = Some(form);
@@ -72,18 +84,9 @@ impl Assembler<'_> {
     /// The forms of a function with their operations before a search: those of the robot's formulation, and of
     /// the best of them in the formulation that is the cheapest for this function, where the search is thorough.
     fn forms(&self, function: Function, from: MotionInput) -> Result<Vec<Form>, Underivable> {
-        let count = |selection: Selection| -> Result<Form, Underivable> {
-            Ok(Form {
-                operations: self.operations(&selection, function, from)?,
-                selection,
-                is_worth: false,
-                is_plain: false,
-                is_tried: false,
-            })
-        };
-        let mut forms = vec![count(self.selection.clone())?];
+        let mut forms = vec![self.form(self.selection.clone(), function, from)?];
         if let Some(other) = self.other_form(function) {
-            forms.push(count(other)?);
+            forms.push(self.form(other, function, from)?);
         }
         let Some(start) = forms.iter_mut().min_by_key(|form| form.operations) else {
             return Ok(forms);
@@ -92,9 +95,46 @@ impl Assembler<'_> {
         if !self.search.is_thorough() {
             return Ok(forms);
         }
-        let (least, mut best) = (start.operations, start.clone());
+        let start = start.clone();
+        let changes = formulation::choices_of_function(self.mechanism, function);
+        let (best, trials) = self.changed(&start, &changes, function, from)?;
+        if best.operations < start.operations {
+            forms.push(best.clone());
+        }
+        let other = self.from_first_axes(&start, &best, &changes, function, from)?;
+        forms.extend(self.promising(function, from, trials, &best)?);
+        forms.extend(other);
+        Ok(forms)
+    }
+
+    /// A form with its operations before a search.
+    fn form(
+        &self,
+        selection: Selection,
+        function: Function,
+        from: MotionInput,
+    ) -> Result<Form, Underivable> {
+        Ok(Form {
+            operations: self.operations(&selection, function, from)?,
+            selection,
+            is_worth: false,
+            is_plain: false,
+            is_tried: false,
+        })
+    }
+
+    /// The best form that changes of a formulation lead to, one after the other, each if it is better; also all that
+    /// were looked at.
+    fn changed(
+        &self,
+        start: &Form,
+        changes: &[Change],
+        function: Function,
+        from: MotionInput,
+    ) -> Result<(Form, Vec<Form>), Underivable> {
+        let mut best = start.clone();
         let mut trials = vec![best.clone()];
-        for change in &formulation::choices_of_function(self.mechanism, function) {
+        for change in changes {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
             };
@@ -104,14 +144,17 @@ impl Assembler<'_> {
                 dynamics: best.selection.dynamics.other(),
                 ..best.selection.clone()
             });
-            let trial = count(Selection {
+            let selection = Selection {
                 formulation,
                 ..best.selection.clone()
-            });
+            };
             // A form in which a leg cannot be written is none to choose.
-            let Ok(mut trial) = trial else { continue };
+            let Ok(mut trial) = self.form(selection, function, from) else {
+                continue;
+            };
             (trial.is_plain, trial.is_tried) = (change.is_plain(), change.takes_first());
-            if let Some(Ok(mut other)) = other.map(count) {
+            let other = other.map(|selection| self.form(selection, function, from));
+            if let Some(Ok(mut other)) = other {
                 (other.is_plain, other.is_tried) = (true, true);
                 trials.push(other);
             }
@@ -120,11 +163,114 @@ impl Assembler<'_> {
             }
             trials.push(trial);
         }
-        if best.operations < least {
-            forms.push(best.clone());
+        Ok((best, trials))
+    }
+
+    /// The best form that changes lead to from the first axes of all legs, where legs differ in shape and a short
+    /// search makes it cheaper than the best one: what suits one shape may be no better with what the robot's
+    /// formulation has for the others.
+    fn from_first_axes(
+        &self,
+        start: &Form,
+        best: &Form,
+        changes: &[Change],
+        function: Function,
+        from: MotionInput,
+    ) -> Result<Option<Form>, Underivable> {
+        let plain = Change::Plain.of(&start.selection.formulation);
+        let Some(formulation) = plain.filter(|_| formulation::has_several_shapes(self.mechanism))
+        else {
+            return Ok(None);
+        };
+        let selection = Selection {
+            formulation,
+            ..start.selection.clone()
+        };
+        let Ok(plain) = self.form(selection, function, from) else {
+            return Ok(None);
+        };
+        let (mut other, _) = self.changed(&plain, changes, function, from)?;
+        if other.selection.formulation == best.selection.formulation {
+            return Ok(None);
         }
-        forms.extend(self.promising(function, from, trials, &best)?);
-        Ok(forms)
+        other.is_worth = true;
+        let after = |form: &Form| self.after_short_search(&form.selection, function, from);
+        Ok((after(&other)? < after(best)?).then_some(other))
+    }
+
+    /// What the changes that are tried last make of a form, each where a short search says that it pays, with the
+    /// operations after such searches: of the form, and of what is made of it. `None` if nothing pays.
+    fn refined(
+        &self,
+        function: Function,
+        from: MotionInput,
+        form: &Form,
+    ) -> Result<Option<(Form, [usize; 2])>, Underivable> {
+        let changes = formulation::last_choices(self.mechanism, function);
+        if changes.is_empty() || !self.search.is_thorough() {
+            return Ok(None);
+        }
+        let mut selection = form.selection.clone();
+        let first = self.after_short_search(&selection, function, from)?;
+        let mut least = first;
+        for change in &changes {
+            let Some(formulation) = change.of(&selection.formulation) else {
+                continue;
+            };
+            let other = Selection {
+                formulation,
+                ..selection.clone()
+            };
+            let after = self.after_short_search(&other, function, from)?;
+            if after < least {
+                (selection, least) = (other, after);
+            }
+        }
+        let refined = Form {
+            selection,
+            ..form.clone()
+        };
+        Ok((least < first).then_some((refined, [first, least])))
+    }
+
+    /// The best form in other axes of one that the last changes have made, if a short search makes it better: which
+    /// axes suit it may be another matter than before.
+    fn in_other_axes(
+        &self,
+        function: Function,
+        from: MotionInput,
+        (form, least): (&Form, usize),
+    ) -> Result<Option<Form>, Underivable> {
+        if function.columns().is_none() {
+            return Ok(None);
+        }
+        let changes = formulation::choices_of_function(self.mechanism, function);
+        let start = self.form(form.selection.clone(), function, from)?;
+        let (best, trials) = self.changed(&start, &changes, function, from)?;
+        let operations = |form: &Form| form.operations;
+        let mut found: Option<(usize, Form)> = None;
+        for form in formulation::promising(trials, best.operations, operations) {
+            let after = self.after_short_search(&form.selection, function, from)?;
+            if after < found.as_ref().map_or(least, |(after, _)| *after) {
+                found = Some((after, form));
+            }
+        }
+        Ok(found.map(|(_, form)| form))
+    }
+
+    /// The operations of a function after a short search.
+    fn after_short_search(
+        &self,
+        selection: &Selection,
+        function: Function,
+        from: MotionInput,
+    ) -> Result<usize, Underivable> {
+        let short = Assembler {
+            selection,
+            search: &Search::short(),
+            ..*self
+        };
+        Ok(short.program(function, from)?.cost().operations())
     }
 
     /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
@@ -144,16 +290,7 @@ impl Assembler<'_> {
         found.retain(|Form { selection, .. }| {
             selection.formulation != *formulation || selection.dynamics != dynamics
         });
-        let search = Search::short();
-        let after = |form: &Form| -> Result<usize, Underivable> {
-            let selection = &form.selection;
-            let short = Assembler {
-                selection,
-                search: &search,
-                ..*self
-            };
-            Ok(short.program(function, from)?.cost().operations())
-        };
+        let after = |form: &Form| self.after_short_search(&form.selection, function, from);
         if found.is_empty() {
             return Ok(Vec::new());
         }
@@ -210,6 +347,10 @@ impl Assembler<'_> {
 
 /// Operations after a short search of a plain form that is worth a longer one, in hundredths of the fewest.
 const NEAR: usize = 106;
+
+/// Operations after a short search of what changes have made of a form, in hundredths of the form's own, that leave no
+/// hope for the form.
+const CLEARLY: usize = 98;
 
 /// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
 /// replacements take about as much from each form of the dynamics; with and without combined columns they,

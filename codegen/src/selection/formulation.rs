@@ -34,6 +34,9 @@ pub(super) fn cheapest_formulation(
         own_axes: false,
         weighted: false,
         lends: false,
+        by_ends: false,
+        by_rows: false,
+        masses_at_ends: false,
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -111,6 +114,12 @@ pub(super) enum Change {
     Weighted(bool),
     /// Whether legs lend masses at their ends to what they end on.
     Lends(bool),
+    /// Whether rows of legs on a platform that moves aside share the velocities of the legs' ends.
+    ByEnds(bool),
+    /// Whether rates of legs are taken by the rows of their reduced Jacobians.
+    ByRows(bool),
+    /// Whether masses at the ends of legs are masses at points of what the legs end on.
+    MassesAtEnds(bool),
 }
 
 impl Change {
@@ -147,6 +156,9 @@ impl Change {
             Self::OwnAxes(own_axes) => changed.own_axes = *own_axes,
             Self::Weighted(weighted) => changed.weighted = *weighted,
             Self::Lends(lends) => changed.lends = *lends,
+            Self::ByEnds(by_ends) => changed.by_ends = *by_ends,
+            Self::ByRows(by_rows) => changed.by_rows = *by_rows,
+            Self::MassesAtEnds(at_ends) => changed.masses_at_ends = *at_ends,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -213,6 +225,37 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
     all
 }
 
+/// Whether legs of more than one shape are closed, so that their axes are chosen one after the other.
+pub(super) fn has_several_shapes(mechanism: &Mechanism) -> bool {
+    let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
+    closed.map(|leg| leg.shape).collect::<BTreeSet<_>>().len() > 1
+}
+
+/// The changes that are tried last, on what the others have made: whether they pay is seen after a search alone.
+pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Change> {
+    let has_columns = function.columns().is_some();
+    let has_motion = has_forces(function)
+        || has_columns
+        || matches!(
+            function,
+            Function::JointVelocities
+                | Function::JointAccelerations
+                | Function::AccelerationFromActuators
+        );
+    let mut all = Vec::new();
+    if mechanism.is_parasitic() {
+        all.push(Change::ByEnds(true));
+    }
+    if has_motion && !mechanism.is_tree() {
+        all.push(Change::ByRows(true));
+        let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
+        if has_columns && mechanism.legs.iter().any(ends_in_point) {
+            all.push(Change::MassesAtEnds(true));
+        }
+    }
+    all
+}
+
 /// The formulations of a function that one change makes of that of a robot, and those that all changes so far make
 /// together.
 #[must_use]
@@ -223,7 +266,9 @@ pub fn formulations(
 ) -> Vec<Formulation> {
     let mut together = of.clone();
     let mut all = Vec::new();
-    for change in choices_of_function(mechanism, function) {
+    let last = last_choices(mechanism, function);
+    let changes = choices_of_function(mechanism, function).into_iter();
+    for change in changes.chain(last) {
         all.extend(change.of(of));
         together = change.of(&together).unwrap_or(together);
         if !all.contains(&together) {

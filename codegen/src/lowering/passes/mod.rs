@@ -18,6 +18,7 @@
 
 mod angles;
 mod come_home;
+mod common_factors;
 mod conditions;
 mod guards;
 mod own_pairs;
@@ -47,11 +48,12 @@ const fn pass(name: &'static str, run: fn(&mut Dag, &SearchLimits)) -> Pass {
 }
 
 /// All passes, in their order.
-pub(crate) const PASSES: [Pass; 12] = [
+pub(crate) const PASSES: [Pass; 13] = [
     pass("replacements", replacements::run),
     pass("repair", repair::run),
     pass("conditions", conditions::run),
     pass("walk", walk::run),
+    pass("common factors", common_factors::run),
     pass("come home", come_home::run),
     pass("repair", repair::run),
     pass("conditions", conditions::run),
