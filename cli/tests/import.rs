@@ -260,3 +260,19 @@ fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
     let sdf = torques("five_bar.sdf", &model("five_bar.sdf"), &options, inputs);
     are_same(&urdf, &sdf);
 }
+
+/// A loop in space whose joints a rule finds for the lengths of the file: for lengths that are a little other, which
+/// the columns of errors in lengths are told from, Newton's method has to.
+#[test]
+fn an_imported_loop_in_space_is_identified() {
+    for name in ["5bar_linkage_iso3d", "5bar_linkage_iso6d"] {
+        let path = format!("models/example-parallel-robots/{name}/robot.urdf");
+        let Some(path) = common::shared(&path) else {
+            return;
+        };
+        let bench = Bench::new();
+        bench.good(&["import", &path, "-o", "my.toml"]);
+        let said = bench.good(&["identify", "my.toml"]);
+        assert!(said.contains("zz_"), "{said}");
+    }
+}

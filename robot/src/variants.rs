@@ -66,6 +66,8 @@ pub(crate) fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
             Function::IdmRedPlatform(columns) => columns == Columns::Standard,
             Function::IdmRedPayload => true,
             Function::JointVelocities | Function::JointAccelerations => true,
+            // Where no rule finds the joints, these do.
+            Function::ClosureError | Function::LegsJacobian => true,
             _ => false,
         };
         asked && InterpretedRobot::serves(mechanism, function, from)

@@ -194,25 +194,28 @@ fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
     assert_eq!(excited(&robot).tables, found.tables);
 }
 
+/// Of chains, too: their motors may come to a singularity as those of a platform.
 #[test]
 fn limits_that_no_motion_keeps_are_told_at_their_line() {
-    let robot = library("five_bar");
-    let text = format!("{}\n[excitation]\ncondition = 1\n", robot.source().text);
-    let line = text
-        .lines()
-        .position(|line| line == "[excitation]")
-        .map(|at| at + 1);
-    let robot = Robot::from_text("five_bar.toml", &text).expect("a robot");
-    let error: Error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
-    let problems = error.problems();
-    assert_eq!(problems[0].line, line, "{error}");
-    assert!(
-        problems[0]
-            .message
-            .contains("condition (of the description)"),
-        "{error}"
-    );
-    assert!(problems[0].help.is_some());
+    for name in ["five_bar", "ankle"] {
+        let robot = library(name);
+        let text = format!("{}\n[excitation]\ncondition = 1\n", robot.source().text);
+        let line = text
+            .lines()
+            .position(|line| line == "[excitation]")
+            .map(|at| at + 1);
+        let robot = Robot::from_text(name, &text).expect("a robot");
+        let error: Error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
+        let problems = error.problems();
+        assert_eq!(problems[0].line, line, "{error}");
+        assert!(
+            problems[0]
+                .message
+                .contains("condition (of the description)"),
+            "{error}"
+        );
+        assert!(problems[0].help.is_some());
+    }
 }
 
 #[test]

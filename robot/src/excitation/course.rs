@@ -19,6 +19,8 @@ pub(super) struct Bench<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) info: Info<'a>,
     pub(super) has_platform: bool,
+    /// Whether it has a platform or chains, whose actuators may be at a singularity.
+    pub(super) has_loop: bool,
     /// Which coordinates are lengths.
     pub(super) lengths: Vec<bool>,
     /// Actuators whose rows of J_p^inv have to be regular: all, or the kept ones of a redundant robot.
@@ -190,7 +192,7 @@ impl<'a> Bench<'a> {
     /// first one, because the motion crosses a singularity then.
     fn conditions(&self, jacobians: &[f64]) -> Vec<f64> {
         let (n, r) = (self.info.sizes.actuators, self.info.sizes.dof);
-        if !self.has_platform {
+        if !self.has_loop {
             return Vec::new();
         }
         let mut side = 0.0;

@@ -103,10 +103,13 @@ pub(super) fn limits(
     let own = table.and_then(|t| t.condition).map(|value| vec![value]);
     let runs = of_runs(LimitKind::Condition)
         .filter(|peak| peak.iter().all(|p| p.is_finite() && *p > SAFE_CONDITION));
+    // Where home itself is not far from singular, motion has to have some room.
+    let at_home = bench.condition_at(&vec![0.0; bench.info.sizes.dof]);
+    let safe = SAFE_CONDITION.max(2.0 * at_home.filter(|own| own.is_finite()).unwrap_or_default());
     let condition = own
         .clone()
         .or(runs.clone())
-        .map_or(SAFE_CONDITION, |values| values[0]);
+        .map_or(safe, |values| values[0]);
     let assumed = match moving.is_some() {
         true => None,
         false => Some(reached(bench, condition)),
@@ -130,8 +133,8 @@ pub(super) fn limits(
         let share = torque_share(description);
         add(LimitKind::Torque, share, rates(LimitKind::Torque), None);
     }
-    if bench.has_platform {
-        add(LimitKind::Condition, own, runs, Some(vec![SAFE_CONDITION]));
+    if bench.has_loop {
+        add(LimitKind::Condition, own, runs, Some(vec![safe]));
     }
     all
 }
@@ -169,7 +172,7 @@ fn torque_share(description: &Description) -> Option<Vec<f64>> {
 }
 
 /// Displacements of the coordinates where no run tells of them: half of what is reached along each alone on
-/// both sides without a larger condition number; of joints of a robot without platform a usual value.
+/// both sides without a larger condition number; of joints of a robot without platform at most a usual value.
 fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
     let dof = bench.info.sizes.dof;
     let along = |coordinate: usize, sign: f64| {
@@ -186,9 +189,15 @@ fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
         }
         good
     };
-    let of = |coordinate: usize| match bench.has_platform {
-        true => REACH_SHARE * along(coordinate, 1.0).min(along(coordinate, -1.0)),
-        false => ASSUMED[usize::from(bench.is_length(coordinate))],
+    let share =
+        |coordinate: usize| REACH_SHARE * along(coordinate, 1.0).min(along(coordinate, -1.0));
+    let of = |coordinate: usize| {
+        let usual = ASSUMED[usize::from(bench.is_length(coordinate))];
+        match (bench.has_platform, bench.has_loop) {
+            (true, _) => share(coordinate),
+            (false, true) => usual.min(share(coordinate)),
+            (false, false) => usual,
+        }
     };
     (0..dof).map(of).collect()
 }

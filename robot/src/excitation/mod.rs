@@ -400,6 +400,7 @@ fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<
     Ok(Bench {
         model,
         has_platform: robot.description().platform.is_some(),
+        has_loop: !robot.model().model().mechanism.is_tree(),
         lengths: frame::coordinates(robot.description())
             .into_iter()
             .map(|c| c.1)
