@@ -104,11 +104,12 @@ fn on_sheet<'a>(
         JointsBy::Newton => from != MotionInput::Actuators,
         JointsBy::Rule => from == MotionInput::Pose,
     };
-    if is_of_pose && !brings_back && !closes {
-        guards.extend(sheet.robot.closed_guards());
-    }
+    // What is at zero otherwise misses more there than anything that follows from it.
     if from != MotionInput::Actuators {
         guards.extend(sheet.robot.still_guards(still));
+    }
+    if is_of_pose && !brings_back && !closes {
+        guards.extend(sheet.robot.closed_guards());
     }
     if brings_back {
         guards.retain(|guard| !matches!(guard.kind, GuardKind::Coordinates(_)));
