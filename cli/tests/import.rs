@@ -154,7 +154,6 @@ fn torques(name: &str, text: &str, options: &[&str], inputs: [&str; 3]) -> Vec<f
     let (bench, toml) = imported(name, text, options);
     let (_, values) = toml.split_once("[experiment.parameters]").expect("values");
     let (values, _) = values.split_once("[prior").unwrap_or((values, ""));
-    bench.write("values.toml", &format!("[parameters]{values}"));
     let count = match inputs[0] {
         "pose" => 2,
         _ => 4,
@@ -170,14 +169,21 @@ fn torques(name: &str, text: &str, options: &[&str], inputs: [&str; 3]) -> Vec<f
     };
     let states: Vec<serde_json::Value> = (0..5).map(state).collect();
     bench.write("states.json", &serde_json::Value::from(states).to_string());
-    let asked = [
-        "evaluate",
-        "my.toml",
-        "inverse_dynamics",
-        "--states",
-        "states.json",
-    ];
-    let document = bench.json(&[&asked[..], &["--parameters", "values.toml"]].concat());
+    let asked = |function: &'static str, more: &[&'static str]| {
+        let own = ["evaluate", "my.toml", function, "--states", "states.json"];
+        bench.json(&[&own[..], more].concat())
+    };
+    // What the file says nothing of is zero.
+    let document = asked("idm_red_platform", &[]);
+    let names = document["parameters"].as_array().expect("names").iter();
+    let names = names.map(|name| name.as_str().expect("a name"));
+    let is_absent = |name: &&str| !values.contains(&format!("\n{name} = "));
+    let zeros: String = names
+        .filter(is_absent)
+        .map(|name| format!("{name} = 0\n"))
+        .collect();
+    bench.write("values.toml", &format!("[parameters]{values}\n{zeros}"));
+    let document = asked("inverse_dynamics", &["--parameters", "values.toml"]);
     let mut all = Vec::new();
     for result in document["results"].as_array().expect("results") {
         let (_, values) = result

@@ -53,7 +53,7 @@ fn xml_is_read_without_entities_and_without_a_network() {
     assert!(said.contains("document type and its entities"), "{said}");
     let said = refused("robot.urdf", "<robot name='r'>\n<link name='a'>\n</robot>");
     assert!(said.starts_with("3: this is no XML"), "{said}");
-    assert!(refused("robot.urdf", "<sdf/>").contains("neither MJCF nor URDF"));
+    assert!(refused("robot.urdf", "<collada/>").contains("neither MJCF nor URDF"));
     let deep =
         "<mujoco>".to_owned() + &"<body>".repeat(5000) + &"</body>".repeat(5000) + "</mujoco>";
     assert!(refused("deep.xml", &deep).contains("deep"));

@@ -226,14 +226,10 @@ fn axes_follow_axes() {
 
 /// What is said of a file.
 fn said(text: &str) -> String {
-    said_with(text, &Options::default())
-}
-
-fn said_with(text: &str, options: &Options) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.sdf");
     fs::write(&file, text).expect("a file");
-    let errors = import(&file, options).expect_err(text);
+    let errors = import(&file, &Options::default()).expect_err(text);
     let mut all = String::new();
     for (source, diagnostics) in &errors.0 {
         for error in diagnostics {

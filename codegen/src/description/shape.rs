@@ -151,7 +151,7 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
 }
 
 /// What a pitch is, for whoever gave none.
-const PITCH: &str = "pitch = \"5 mm\" goes along z by 5 mm for each turn about it, \"0.8 mm/rad\" by 0.8 mm for each radian";
+const PITCH: &str = "pitch = \"5 mm\" for each turn about z, or \"0.8 mm/rad\" for each radian";
 
 /// The word for a table's joint; a turn, where there is none that is known.
 fn word(table: &Table<'_, '_>) -> Spanned<Word> {

@@ -250,9 +250,8 @@ impl Tree<'_, '_> {
             }
         }
         let is_carried = |link: usize| {
-            let own = self.at[link + 1].iter();
-            own.into_iter()
-                .any(|&edge| self.edges[edge].ends[1] == Some(link))
+            let mut own = self.at[link + 1].iter();
+            own.any(|&edge| self.edges[edge].ends[1] == Some(link))
         };
         let mut all = (0..seen.len()).filter(|&link| seen[link] && !is_carried(link));
         all.next().unwrap_or(link)

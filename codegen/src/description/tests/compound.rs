@@ -174,7 +174,7 @@ fn a_helical_joint_is_a_slide_that_follows_a_turn() {
 fn a_pitch_is_a_length_that_moves_something() {
     let one = |keys: &str| listed(&leg("helical", keys)).join("\n");
     assert!(
-        one("").contains("pitch = \"5 mm\" goes along z by 5 mm for each turn"),
+        one("").contains("pitch = \"5 mm\" for each turn about z"),
         "{}",
         one("")
     );
@@ -185,7 +185,7 @@ fn a_pitch_is_a_length_that_moves_something() {
     );
     let unit = one("pitch = \"5 kg\"");
     assert!(
-        unit.contains("8:9 `pitch`: expected a length, found a mass"),
+        unit.contains("8:9 `pitch`: expected a length (m), found a mass"),
         "{unit}"
     );
     let other = listed(&leg("universal", "pitch = \"5 mm\"")).join("\n");
