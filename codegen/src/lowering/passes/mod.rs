@@ -12,7 +12,8 @@
 //! (the node's *maximal fan-out free cone*, as in the resubstitution of logic synthesis), less those
 //! that it adds. The tree of dominators says at once which operations these can be, so that of the
 //! millions of sums and products of two nodes only those few are tried that may save something. Where
-//! nothing saves any more, a walk among forms of equal cost goes on. No new divisor is ever introduced, so
+//! nothing saves any more, a walk among forms of equal cost goes on, and at last factors are collected that
+//! products have in common across other terms of their sum. No new divisor is ever introduced, so
 //! the function is defined wherever it was, and no sum that cancels near singular configurations where
 //! the form that it replaces does not.
 
