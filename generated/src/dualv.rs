@@ -43,17 +43,17 @@
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 10 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 13 gd |  |
-/// | `inverse_dynamics` | 580, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `inverse_dynamics_from_joints` | 521, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 743, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_from_joints` | 517, 9 sc, 12 sg, 7 gd |  |
+/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 442, 9 sc, 12 sg, 7 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
-/// | `bias` | 465, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `bias` | 461, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd |  |
-/// | `forward_dynamics` | 715, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `forward_dynamics` | 707, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 14 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
@@ -97,7 +97,7 @@
 /// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
 /// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
+/// | `moment1_z_leg2` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_a2_y_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
@@ -7671,7 +7671,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 580 operations (248 additions, 318 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 582 intermediates.
+    /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 575 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7736,35 +7736,36 @@ impl DualV {
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_2_squared_leg1;
+            + l_ab_squared_rate_2_squared_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let rate_dot_1_leg1 = k1_leg1
-            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+            * (minus_a_on_f1_leg1 + l_ab_squared_rate_1_squared_leg1 * c2_leg1);
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
+            + l_ab_squared_rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (a_on_f2_leg1 + l_ab_squared_rate_2_squared_leg1 * c2_leg1);
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
             + parameters[7] * rate_2_squared_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let t2_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1])
+            + parameters[4] + ::overact::math::signed(parameters[3], rate_1_leg1)
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + parameters[2] * rate_1_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = rate_dot_1_leg1
-            * (parameters[0] + L_AB_SQUARED * parameters[8])
-            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t2_leg1 - tau_2_leg1;
         let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
             + 1.7857142857142858 * (t1_leg1 * rate_dot_1_leg1);
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
@@ -7776,12 +7777,13 @@ impl DualV {
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_leg2 = 0.5 * d_x_leg2;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = half_d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
@@ -7794,18 +7796,21 @@ impl DualV {
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED * rate_1_squared_leg2;
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg2;
+            + l_ab_squared_rate_1_squared_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
         let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + l_ab_squared_rate_2_squared_leg2 * c2_leg2);
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_2_squared_leg2;
+            + l_ab_squared_rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
+            * (minus_a_on_f1_leg2 + l_ab_squared_rate_1_squared_leg2 * c2_leg2);
         let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
             + 1.7857142857142858 * (t1_leg2 * minus_rate_dot_1_leg2);
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
@@ -7821,20 +7826,18 @@ impl DualV {
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
             + parameters[22] * rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
         let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
             - parameters[22] * rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[19]
-            - (parameters[16] * minus_rate_dot_1_leg2
-                + parameters[17] * minus_rate_1_leg2
-                + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
-        let force_on_u1_leg2 = L_AB
+        let t2_leg2 = L_AB
             * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-            - minus_rate_dot_1_leg2 * (parameters[15] + L_AB_SQUARED * parameters[23])
-            + tau_1_leg2 - tau_2_leg2;
+            + parameters[19] - parameters[17] * minus_rate_1_leg2
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
+            - minus_rate_dot_1_leg2
+                * (parameters[15] + L_AB_SQUARED * parameters[23] + parameters[16]);
+        let force_on_u1_leg2 = t2_leg2 - tau_2_leg2;
         // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let p_x_leg3_plus_half_d_x_leg2 = p_x_leg3 + half_d_x_leg2;
+        let d_x_leg3 = p_x_leg3_plus_half_d_x_leg2 + p_x_leg3_plus_half_d_x_leg2;
         let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
         let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
@@ -7843,53 +7846,54 @@ impl DualV {
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = p_x_leg3_plus_half_d_x_leg2 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
-        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + l_ab_squared_rate_2_squared_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
         let c2_leg3 = 6.377551020408164 * t1_leg3;
-        let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + l_ab_squared_rate_1_squared_leg3 * c2_leg3);
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + l_ab_squared_rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + l_ab_squared_rate_2_squared_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
             - parameters[36] * rate_2_squared_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
             + parameters[37] * rate_2_squared_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + l_ab_squared_rate_1_squared_leg3 * c2_leg3);
+        let t2_leg3 = parameters[34]
+            + ::overact::math::signed(parameters[33], rate_1_leg3)
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + parameters[32] * rate_1_leg3
+            + rate_dot_1_leg3
+                * (parameters[30] + L_AB_SQUARED * parameters[38] + parameters[31]);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[30] + L_AB_SQUARED * parameters[38])
-            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
         let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
             + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
@@ -7899,17 +7903,18 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let t1_leg4 = p_x_leg3_plus_half_d_x_leg2 - 0.3950502153918333;
+        let d_x_leg4 = t1_leg4 + t1_leg4;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l1_x_leg4 = t1_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
@@ -7929,8 +7934,8 @@ impl DualV {
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
         let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
-        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let t2_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let c2_leg4 = 6.377551020408164 * t2_leg4;
         let rate_dot_2_leg4 = k1_leg4
             * (a_on_f2_leg4 + l_ab_squared_rate_2_squared_leg4 * c2_leg4);
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
@@ -7938,7 +7943,7 @@ impl DualV {
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + l_ab_squared_rate_1_squared_leg4 * c2_leg4);
         let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
-            + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
+            + 1.7857142857142858 * (t2_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
             - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
@@ -7954,14 +7959,13 @@ impl DualV {
             + parameters[52] * rate_dot_2_leg4;
         let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
             - parameters[52] * rate_2_squared_leg4;
-        let tau_1_leg4 = parameters[49]
-            - (parameters[46] * minus_rate_dot_1_leg4
-                + parameters[47] * minus_rate_1_leg4
-                + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
-        let force_on_u1_leg4 = L_AB
+        let t3_leg4 = L_AB
             * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-            - minus_rate_dot_1_leg4 * (parameters[45] + L_AB_SQUARED * parameters[53])
-            + tau_1_leg4 - tau_2_leg4;
+            + parameters[49] - parameters[47] * minus_rate_1_leg4
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
+            - minus_rate_dot_1_leg4
+                * (parameters[45] + L_AB_SQUARED * parameters[53] + parameters[46]);
+        let force_on_u1_leg4 = t3_leg4 - tau_2_leg4;
         let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
         let first_y_platform = parameters[62] + parameters[66];
@@ -7970,7 +7974,7 @@ impl DualV {
         let force_x_platform = acceleration[0] * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
@@ -7982,13 +7986,13 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 / s_1_1;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = acceleration[1] * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t3_leg3 + g2_vy_leg4 * force_on_u2_leg4
+        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
             - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
             - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
@@ -8015,7 +8019,7 @@ impl DualV {
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -8026,7 +8030,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
             + acceleration[2] * inertia_zz_platform;
-        let t2 = t4_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
@@ -8058,7 +8062,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 521 operations (218 additions, 293 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 535 intermediates.
+    /// 517 operations (218 additions, 289 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 531 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8133,16 +8137,16 @@ impl DualV {
             - parameters[6] * rate_2_squared_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
             + parameters[7] * rate_2_squared_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let t1_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1])
+            + ::overact::math::signed(parameters[3], rate_1_leg1)
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + parameters[2] * rate_1_leg1 + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = rate_dot_1_leg1
-            * (parameters[0] + L_AB_SQUARED * parameters[8])
-            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
         let a2_y_leg1 = s2_leg1 * l_ab_rate_1_squared_leg1
             + v2_by_1_y_leg1 * rate_dot_1_leg1;
         let moment2_z_leg1 = parameters[6] * a2_y_leg1
@@ -8156,38 +8160,38 @@ impl DualV {
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let k1_leg2 = INV_L_AB / s2_leg2;
         let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg2;
         let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
         let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
             + minus_g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
-            + L_AB * rate_2_squared_leg2;
-        let g1_vy_leg2 = s12_leg2 * k1_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = L_AB * c2_leg2;
-        let rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
-        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
-            + l_ab_rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k1_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[22] * minus_rate_dot_2_leg2
             - parameters[21] * rate_2_squared_leg2;
         let minus_force2_y_leg2 = parameters[21] * minus_rate_dot_2_leg2
             + parameters[22] * rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[16] * rate_dot_1_leg2 + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19];
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let t1_leg2 = ::overact::math::signed(parameters[18], rate_1_leg2)
+            + L_AB * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            + parameters[17] * rate_1_leg2 + parameters[19]
+            + rate_dot_1_leg2
+                * (parameters[15] + L_AB_SQUARED * parameters[23] + parameters[16]);
         let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
         let tau_2_leg2 = parameters[26]
             - (parameters[24] * minus_qd_2_leg2
                 + ::overact::math::signed(parameters[25], minus_qd_2_leg2));
-        let force_on_u1_leg2 = rate_dot_1_leg2
-            * (parameters[15] + L_AB_SQUARED * parameters[23])
-            + L_AB * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-            + tau_1_leg2 - tau_2_leg2;
+        let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
         let a2_y_leg2 = s2_leg2 * l_ab_rate_1_squared_leg2
             + v2_by_1_y_leg2 * rate_dot_1_leg2;
         let moment2_z_leg2 = parameters[21] * a2_y_leg2
@@ -8202,42 +8206,42 @@ impl DualV {
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let k1_leg3 = INV_L_AB / s2_leg3;
         let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-            + minus_g2_vy_leg3 * v_end_y_leg3;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
-            + L_AB * rate_2_squared_leg3;
-        let g1_vy_leg3 = s12_leg3 * k1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = L_AB * c2_leg3;
-        let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
         let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
         let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
             + l_ab_rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
             - parameters[36] * rate_2_squared_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
             + parameters[37] * rate_2_squared_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let t1_leg3 = ::overact::math::signed(parameters[33], rate_1_leg3)
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + parameters[32] * rate_1_leg3 + parameters[34]
+            + rate_dot_1_leg3
+                * (parameters[30] + L_AB_SQUARED * parameters[38] + parameters[31]);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[30] + L_AB_SQUARED * parameters[38])
-            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
         let a2_y_leg3 = s2_leg3 * l_ab_rate_1_squared_leg3
             + v2_by_1_y_leg3 * rate_dot_1_leg3;
         let moment2_z_leg3 = parameters[36] * a2_y_leg3
@@ -8247,7 +8251,7 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -8255,38 +8259,39 @@ impl DualV {
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let k1_leg4 = INV_L_AB / s2_leg4;
         let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg4;
         let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
         let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
             + minus_g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
-            + L_AB * rate_2_squared_leg4;
-        let g1_vy_leg4 = s12_leg4 * k1_leg4;
-        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
-        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
         let v2_by_1_y_leg4 = L_AB * c2_leg4;
-        let rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
-        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
-        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
-            + l_ab_rate_1_squared_leg4;
         let minus_rate_dot_2_leg4 = k1_leg4
             * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
         let force2_x_leg4 = parameters[52] * minus_rate_dot_2_leg4
             - parameters[51] * rate_2_squared_leg4;
         let minus_force2_y_leg4 = parameters[51] * minus_rate_dot_2_leg4
             + parameters[52] * rate_2_squared_leg4;
-        let tau_1_leg4 = parameters[46] * rate_dot_1_leg4 + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49];
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+        let t1_leg4 = parameters[49]
+            + L_AB * (s2_leg4 * force2_x_leg4 - c2_leg4 * minus_force2_y_leg4)
+            + parameters[47] * rate_1_leg4
+            + ::overact::math::signed(parameters[48], rate_1_leg4)
+            + rate_dot_1_leg4
+                * (parameters[45] + L_AB_SQUARED * parameters[53] + parameters[46]);
         let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
         let tau_2_leg4 = parameters[56]
             - (parameters[54] * minus_qd_2_leg4
                 + ::overact::math::signed(parameters[55], minus_qd_2_leg4));
-        let force_on_u1_leg4 = rate_dot_1_leg4
-            * (parameters[45] + L_AB_SQUARED * parameters[53])
-            + L_AB * (s2_leg4 * force2_x_leg4 - c2_leg4 * minus_force2_y_leg4)
-            + tau_1_leg4 - tau_2_leg4;
+        let force_on_u1_leg4 = t1_leg4 - tau_2_leg4;
         let a2_y_leg4 = s2_leg4 * l_ab_rate_1_squared_leg4
             + v2_by_1_y_leg4 * rate_dot_1_leg4;
         let moment2_z_leg4 = parameters[51] * a2_y_leg4
@@ -8304,7 +8309,7 @@ impl DualV {
         let force_x_platform = acceleration[0] * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t1_leg3 + g1_vx_leg4 * force_on_u1_leg4
+        let t1_platform = t2_leg3 + g1_vx_leg4 * force_on_u1_leg4
             - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
@@ -8316,13 +8321,13 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let l_2_1 = s_1_2 / s_1_1;
-        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = acceleration[1] * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t2_leg3 + g1_vy_leg4 * force_on_u1_leg4
+        let t1 = t3_leg3 + g1_vy_leg4 * force_on_u1_leg4
             - minus_g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
             - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
@@ -8349,7 +8354,7 @@ impl DualV {
         let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
         let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t3_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g2_wz_leg2 * force_on_u2_leg2
             - minus_g1_wz_leg2 * force_on_u1_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -8360,7 +8365,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
             + acceleration[2] * inertia_zz_platform;
-        let t2 = t3_leg3 + g1_wz_leg4 * force_on_u1_leg4
+        let t2 = t4_leg3 + g1_wz_leg4 * force_on_u1_leg4
             - minus_g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
             - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1
@@ -8393,7 +8398,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 743 operations (325 additions, 401 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 752 intermediates.
+    /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 748 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -8677,16 +8682,16 @@ impl DualV {
             - rate_2_squared_leg1 * parameters[6];
         let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
             + rate_2_squared_leg1 * parameters[7];
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let t3_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1])
+            + ::overact::math::signed(parameters[3], rate_1_leg1)
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + rate_1_leg1 * parameters[2] + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (minus_qd_2_leg1 * parameters[9]
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = rate_dot_1_leg1
-            * (parameters[0] + L_AB_SQUARED * parameters[8])
-            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t3_leg1 - tau_2_leg1;
         let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
             + 1.7857142857142858 * (t1_leg1 * rate_dot_1_leg1);
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
@@ -8721,21 +8726,17 @@ impl DualV {
             + parameters[22] * rate_dot_2_leg2;
         let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
             - rate_2_squared_leg2 * parameters[22];
-        let tau_1_leg2 = parameters[19]
-            - (parameters[16] * minus_rate_dot_1_leg2
-                + minus_rate_1_leg2 * parameters[17]
-                + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
-        let force_on_u1_leg2 = L_AB
+        let t4_leg2 = L_AB
             * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-            - minus_rate_dot_1_leg2 * (parameters[15] + L_AB_SQUARED * parameters[23])
-            + tau_1_leg2 - tau_2_leg2;
+            + parameters[19] - minus_rate_1_leg2 * parameters[17]
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
+            - minus_rate_dot_1_leg2
+                * (parameters[15] + L_AB_SQUARED * parameters[23] + parameters[16]);
+        let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
         // --- leg3
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_end_x_leg3 = dvx - a_arm_x_leg1;
         let a_end_y_leg3 = dvy + a_arm_y_leg3;
-        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + l_ab_squared_rate_2_squared_leg3;
-        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + l_ab_squared_rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
@@ -8744,16 +8745,20 @@ impl DualV {
             - rate_2_squared_leg3 * parameters[36];
         let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
             + rate_2_squared_leg3 * parameters[37];
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + rate_1_leg3 * parameters[32]
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+        let t3_leg3 = parameters[34]
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + rate_1_leg3 * parameters[32]
+            + ::overact::math::signed(parameters[33], rate_1_leg3)
+            + rate_dot_1_leg3
+                * (parameters[30] + L_AB_SQUARED * parameters[38] + parameters[31]);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (minus_qd_2_leg3 * parameters[39]
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[30] + L_AB_SQUARED * parameters[38])
-            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
         let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
             + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
@@ -8763,7 +8768,7 @@ impl DualV {
         let tau_3_leg3 = qd_3_leg3 * parameters[42]
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -8791,14 +8796,13 @@ impl DualV {
             + parameters[52] * rate_dot_2_leg4;
         let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
             - rate_2_squared_leg4 * parameters[52];
-        let tau_1_leg4 = parameters[49]
-            - (parameters[46] * minus_rate_dot_1_leg4
-                + minus_rate_1_leg4 * parameters[47]
-                + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
-        let force_on_u1_leg4 = L_AB
+        let t3_leg4 = L_AB
             * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-            - minus_rate_dot_1_leg4 * (parameters[45] + L_AB_SQUARED * parameters[53])
-            + tau_1_leg4 - tau_2_leg4;
+            + parameters[49] - minus_rate_1_leg4 * parameters[47]
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
+            - minus_rate_dot_1_leg4
+                * (parameters[45] + L_AB_SQUARED * parameters[53] + parameters[46]);
+        let force_on_u1_leg4 = t3_leg4 - tau_2_leg4;
         let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
         let first_y_platform = parameters[62] + parameters[66];
@@ -8807,21 +8811,21 @@ impl DualV {
         let force_x_platform = dvx * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = dvy * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t7 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
+        let t7 = t5_leg3 + g2_vy_leg4 * force_on_u2_leg4
             - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
             - l_2_1 * t1_platform;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -8832,7 +8836,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
             + dwz * inertia_zz_platform;
-        let t8 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t8 = t6_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - l_3_1 * t1_platform - l_3_2 * t7;
         let t9 = inv_pivot_3 * t8;
@@ -8855,7 +8859,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 490 operations (218 additions, 258 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 492 intermediates.
+    /// 490 operations (217 additions, 259 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 492 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8890,10 +8894,8 @@ impl DualV {
         let x_minus_half_d_x_leg3 = pose[0] - half_d_x_leg3;
         let d_x_leg1 = x_minus_half_d_x_leg3 + x_minus_half_d_x_leg3;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
-        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
+        let d_y_leg1 = pose[1] + t1_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -8909,7 +8911,8 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -8929,22 +8932,23 @@ impl DualV {
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
-        let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
+        let moment1_z_leg1 = base_parameters[4] * rate_dot_1_leg1;
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let inv_l_ab_my_2_leg1 = INV_L_AB * base_parameters[24];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = base_parameters[36]
             - (base_parameters[28] * minus_qd_2_leg1
                 + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
-        let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
-            + a_on_f2_leg1 * my_2_leg1_inv_l_ab + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + a_on_f2_leg1 * inv_l_ab_my_2_leg1 - tau_2_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
-            + minus_a_on_f1_leg1 * my_2_leg1_inv_l_ab;
+            + minus_a_on_f1_leg1 * inv_l_ab_my_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = base_parameters[40] * qd_3_leg1
             + ::overact::math::signed(base_parameters[44], qd_3_leg1)
@@ -8963,7 +8967,7 @@ impl DualV {
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
@@ -8991,14 +8995,16 @@ impl DualV {
         let tau_3_leg2 = base_parameters[41] * qd_3_leg2
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (base_parameters[9] * minus_rate_1_leg2
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
-        let force_on_u1_leg2 = a_on_f2_leg2 * inv_l_ab_my_2_leg2
-            - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let minus_moment1_z_leg2 = base_parameters[5] * minus_rate_dot_1_leg2;
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + a_on_f2_leg2 * inv_l_ab_my_2_leg2 - tau_2_leg2;
         // --- leg3
+        let d_y_leg3 = pose[1] - t1_leg3;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -9012,6 +9018,7 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -9027,30 +9034,31 @@ impl DualV {
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+        let moment1_z_leg3 = base_parameters[6] * rate_dot_1_leg3;
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = base_parameters[38]
             - (base_parameters[30] * minus_qd_2_leg3
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
-        let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
-            + a_on_f2_leg3 * inv_l_ab_my_2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + a_on_f2_leg3 * inv_l_ab_my_2_leg3 - tau_2_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
         let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
             + minus_a_on_f1_leg3 * inv_l_ab_my_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
-        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -9093,23 +9101,24 @@ impl DualV {
         let tau_3_leg4 = base_parameters[43] * qd_3_leg4
             + ::overact::math::signed(base_parameters[47], qd_3_leg4);
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
         let tau_1_leg4 = base_parameters[19]
             - (base_parameters[11] * minus_rate_1_leg4
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
-        let force_on_u1_leg4 = a_on_f2_leg4 * inv_l_ab_my_2_leg4
-            - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
-        let mass_platform = base_parameters[3] + base_parameters[52];
-        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let minus_moment1_z_leg4 = base_parameters[7] * minus_rate_dot_1_leg4;
+        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
+            + a_on_f2_leg4 * inv_l_ab_my_2_leg4 - tau_2_leg4;
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let first_x_platform = base_parameters[1] + base_parameters[50];
-        let force_x_platform = acceleration[0] * mass_platform
-            + inv_r_p_a_arm_x_leg1 * first_y_platform
-            - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
-            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
+        let mx_platform_plus_mx_payload = base_parameters[1] + base_parameters[50];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let my_platformR_plus_my_payload = base_parameters[2] + base_parameters[51];
+        let m_platformR_plus_m_payload = base_parameters[3] + base_parameters[52];
+        let force_x_platform = inv_r_p_a_arm_x_leg1 * my_platformR_plus_my_payload
+            - inv_r_p_a_arm_y_leg3 * mx_platform_plus_mx_payload
+            + acceleration[0] * m_platformR_plus_m_payload;
+        let t2 = t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -9120,15 +9129,14 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 / s_1_1;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * mass_platform
-            - (inv_r_p_a_arm_x_leg1 * first_x_platform
-                + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t3_leg3 + g2_vy_leg4 * force_on_u2_leg4
-            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
-            - t1_platform * l_2_1;
+        let force_y_platform = acceleration[1] * m_platformR_plus_m_payload
+            - (inv_r_p_a_arm_x_leg1 * mx_platform_plus_mx_payload
+                + inv_r_p_a_arm_y_leg3 * my_platformR_plus_my_payload);
+        let t4 = t3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            + force_y_platform - t2 * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
@@ -9153,20 +9161,20 @@ impl DualV {
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
-        let moment_z_platform = acceleration[1]
-            * (c_phi * first_x_platform - s_phi * first_y_platform)
-            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
-            + acceleration[2] * inertia_zz_platform;
-        let t2 = t4_leg3 + g2_wz_leg4 * force_on_u2_leg4
-            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
-            - t1_platform * l_3_1 - l_3_2 * t1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let moment_z_platform = acceleration[2]
+            * (base_parameters[0] + base_parameters[49])
+            + a_y_platform * mx_platform_plus_mx_payload
+            - a_x_platform * my_platformR_plus_my_payload;
+        let t6 = t5 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -9175,14 +9183,14 @@ impl DualV {
             0.3076928490286828,
             ::overact::ActuatorGroup::All,
         )?;
-        let t3 = t2 / pivot_3;
-        let t4 = t1 / pivot_2 - l_3_2 * t3;
-        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
+        let t7 = t6 / pivot_3;
+        let t8 = t4 / pivot_2 - l_3_2 * t7;
+        let t9 = t2 / s_1_1 - l_2_1 * t8 - l_3_1 * t7;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
-            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
-            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
-            -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
+            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
+            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8),
+            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
+            -(minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -10369,7 +10377,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 465 operations (197 additions, 260 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 468 intermediates.
+    /// 461 operations (197 additions, 256 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 464 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10414,51 +10422,51 @@ impl DualV {
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
-        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
-            - l1_y_leg1 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 - l_ab_squared_rate_1_squared_leg1 * c2_leg1);
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg1;
         let minus_bias_rate_dot_2_leg1 = k1_leg1
             * (bias_a_on_f2_leg1 + c2_leg1 * l_ab_squared_rate_2_squared_leg1);
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1
             + parameters[7] * rate_2_squared_leg1;
-        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
-            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
-        let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - l_ab_squared_rate_1_squared_leg1 * c2_leg1);
-        let tau_1_leg1 = parameters[2] * rate_1_leg1
-            - parameters[1] * minus_bias_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let t2_leg1 = parameters[4]
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1)
+            - minus_bias_rate_dot_1_leg1
+                * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1]);
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = L_AB
-            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            - minus_bias_rate_dot_1_leg1 * (parameters[0] + L_AB_SQUARED * parameters[8])
-            + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t2_leg1 - tau_2_leg1;
         let bias_a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
             - 1.7857142857142858 * (t1_leg1 * minus_bias_rate_dot_1_leg1);
         let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
@@ -10521,14 +10529,13 @@ impl DualV {
             + parameters[22] * bias_rate_dot_2_leg2;
         let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
             - parameters[22] * rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
+        let t2_leg2 = L_AB
+            * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
             - parameters[17] * minus_rate_1_leg2
-            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
-            + parameters[19];
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2
-            * (parameters[15] + L_AB_SQUARED * parameters[23])
-            + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-            + tau_1_leg2 - tau_2_leg2;
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2) + parameters[19]
+            + bias_rate_dot_1_leg2
+                * (parameters[15] + L_AB_SQUARED * parameters[23] + parameters[16]);
+        let force_on_u1_leg2 = t2_leg2 - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -10575,18 +10582,17 @@ impl DualV {
             - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
         let minus_bias_rate_dot_1_leg3 = k1_leg3
             * (bias_a_on_f1_leg3 - l_ab_squared_rate_1_squared_leg3 * c2_leg3);
-        let tau_1_leg3 = parameters[32] * rate_1_leg3
-            - parameters[31] * minus_bias_rate_dot_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let t2_leg3 = parameters[34]
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3)
+            - minus_bias_rate_dot_1_leg3
+                * (parameters[30] + L_AB_SQUARED * parameters[38] + parameters[31]);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = L_AB
-            * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            - minus_bias_rate_dot_1_leg3
-                * (parameters[30] + L_AB_SQUARED * parameters[38]) + tau_1_leg3
-            - tau_2_leg3;
+        let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
         let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
             - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
         let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
@@ -10597,7 +10603,7 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -10651,21 +10657,20 @@ impl DualV {
         let c2_leg4 = 6.377551020408164 * t1_leg4;
         let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
             - parameters[52] * rate_2_squared_leg4;
-        let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
+        let t3_leg4 = parameters[49]
+            + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
             - parameters[47] * minus_rate_1_leg4
             - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
-            + parameters[49];
-        let force_on_u1_leg4 = bias_rate_dot_1_leg4
-            * (parameters[45] + L_AB_SQUARED * parameters[53])
-            + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-            + tau_1_leg4 - tau_2_leg4;
+            + bias_rate_dot_1_leg4
+                * (parameters[45] + L_AB_SQUARED * parameters[53] + parameters[46]);
+        let force_on_u1_leg4 = t3_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
         let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
         let first_x_platform = parameters[61] + parameters[65];
         let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
@@ -10676,7 +10681,7 @@ impl DualV {
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -10684,11 +10689,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t2_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t3_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t4_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -10981,7 +10986,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 715 operations (302 additions, 386 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 718 intermediates.
+    /// 707 operations (298 additions, 382 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 710 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11104,17 +11109,17 @@ impl DualV {
             - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
         let minus_bias_rate_dot_1_leg1 = k1_leg1
             * (bias_a_on_f1_leg1 - l_ab_squared_rate_1_squared_leg1 * c2_leg1);
-        let t2_leg1 = parameters[0] + L_AB_SQUARED * parameters[8];
-        let tau_1_leg1 = parameters[2] * rate_1_leg1
-            - parameters[1] * minus_bias_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let masses_leg1_1_1 = parameters[0] + L_AB_SQUARED * parameters[8]
+            + parameters[1];
+        let t2_leg1 = L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
+            - minus_bias_rate_dot_1_leg1 * masses_leg1_1_1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = L_AB
-            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            - minus_bias_rate_dot_1_leg1 * t2_leg1 + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t2_leg1 - tau_2_leg1;
         let bias_a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
             - 1.7857142857142858 * (t1_leg1 * minus_bias_rate_dot_1_leg1);
         let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
@@ -11160,19 +11165,19 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let t2_leg2 = parameters[15] + L_AB_SQUARED * parameters[23];
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
             + parameters[22] * bias_rate_dot_2_leg2;
         let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
             - parameters[22] * rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
+        let masses_leg2_1_1 = parameters[15] + L_AB_SQUARED * parameters[23]
+            + parameters[16];
+        let t2_leg2 = L_AB
+            * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
             - parameters[17] * minus_rate_1_leg2
-            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
-            + parameters[19];
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t2_leg2
-            + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-            + tau_1_leg2 - tau_2_leg2;
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2) + parameters[19]
+            + bias_rate_dot_1_leg2 * masses_leg2_1_1;
+        let force_on_u1_leg2 = t2_leg2 - tau_2_leg2;
         // --- leg3
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
@@ -11203,17 +11208,17 @@ impl DualV {
             - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
         let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3
             - l_ab_squared_rate_1_squared_leg3 * c2_leg3) / det_leg3;
-        let t2_leg3 = parameters[30] + L_AB_SQUARED * parameters[38];
-        let tau_1_leg3 = parameters[32] * rate_1_leg3
-            - parameters[31] * minus_bias_rate_dot_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let masses_leg3_1_1 = parameters[30] + L_AB_SQUARED * parameters[38]
+            + parameters[31];
+        let t2_leg3 = L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
+            - minus_bias_rate_dot_1_leg3 * masses_leg3_1_1;
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = L_AB
-            * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            - minus_bias_rate_dot_1_leg3 * t2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
         let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
             - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
         let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
@@ -11262,19 +11267,19 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let t2_leg4 = parameters[45] + L_AB_SQUARED * parameters[53];
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
         let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
             + parameters[52] * bias_rate_dot_2_leg4;
         let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
             - parameters[52] * rate_2_squared_leg4;
-        let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
+        let masses_leg4_1_1 = parameters[45] + L_AB_SQUARED * parameters[53]
+            + parameters[46];
+        let t2_leg4 = L_AB
+            * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
             - parameters[47] * minus_rate_1_leg4
-            - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
-            + parameters[49];
-        let force_on_u1_leg4 = bias_rate_dot_1_leg4 * t2_leg4
-            + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-            + tau_1_leg4 - tau_2_leg4;
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4) + parameters[49]
+            + bias_rate_dot_1_leg4 * masses_leg4_1_1;
+        let force_on_u1_leg4 = t2_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
         let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
@@ -11285,14 +11290,12 @@ impl DualV {
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
             - (t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
                 - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
-        let masses_leg1_1_1 = t2_leg1 + parameters[1];
         let minus_masses_leg1_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg1 * parameters[7])
                 - 62.56377551020408 * (t1_leg1 * parameters[6]));
         let masses_leg2_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg2 * parameters[22])
                 + 62.56377551020408 * (t1_leg2 * parameters[21]));
-        let masses_leg2_1_1 = t2_leg2 + parameters[16];
         let t3_leg2 = g1_vx_leg1
             * (g1_vx_leg1 * masses_leg1_1_1 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
@@ -11301,7 +11304,6 @@ impl DualV {
                 * (g2_vx_leg2 * parameters[20] - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
-        let masses_leg3_1_1 = t2_leg3 + parameters[31];
         let minus_masses_leg3_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg3 * parameters[37])
                 - 62.56377551020408 * (t1_leg3 * parameters[36]));
@@ -11315,7 +11317,6 @@ impl DualV {
         let masses_leg4_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg4 * parameters[52])
                 + 62.56377551020408 * (t1_leg4 * parameters[51]));
-        let masses_leg4_1_1 = t2_leg4 + parameters[46];
         let t3_leg4 = t4_leg3
             + g2_vx_leg4
                 * (g2_vx_leg4 * parameters[50] - minus_g1_vx_leg4 * masses_leg4_1_2)

@@ -21,7 +21,7 @@
 /// | `idm_red_platform` | 0, 1 sg |  |
 /// | `idm_red_platform_base` | 0, 1 sg |  |
 /// | `project_platform` | 0 |  |
-/// | `inverse_dynamics` | 8, 1 sg |  |
+/// | `inverse_dynamics` | 7, 1 sg |  |
 /// | `inverse_dynamics_base` | 6, 1 sg |  |
 /// | `mass_matrix` | 1 |  |
 /// | `mass_matrix_base` | 0 |  |
@@ -350,7 +350,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 8 operations (4 additions, 4 multiplications, 0 divisions), 1 sign, 7 intermediates.
+    /// 7 operations (4 additions, 3 multiplications, 0 divisions), 1 sign, 6 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -366,12 +366,9 @@ impl Emps {
                 ("joint_accelerations", joint_accelerations), ("parameters", parameters),
             ],
         )?;
-        let force1_z_axis = joint_accelerations[0] * parameters[0];
-        let tau_1_axis = joint_accelerations[0] * parameters[1]
-            + joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
-        let force_on_u1_axis = force1_z_axis + tau_1_axis;
+        let force_on_u1_axis = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
+            + joint_accelerations[0] * (parameters[0] + parameters[1]);
         ::core::result::Result::Ok([force_on_u1_axis])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).

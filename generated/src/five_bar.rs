@@ -39,18 +39,18 @@
 /// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `project_platform` | 49, 2 √, 6 gd |  |
 /// | `project_actuators` | 0 |  |
-/// | `inverse_dynamics` | 206, 2 √, 4 sg, 7 gd |  |
-/// | `inverse_dynamics_from_joints` | 188, 4 sc, 4 sg, 3 gd |  |
-/// | `inverse_dynamics_from_actuators` | 232, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `inverse_dynamics` | 203, 2 √, 4 sg, 7 gd |  |
+/// | `inverse_dynamics_from_joints` | 186, 4 sc, 4 sg, 3 gd |  |
+/// | `inverse_dynamics_from_actuators` | 230, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `inverse_dynamics_base` | 182, 2 √, 4 sg, 7 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 146, 4 sc, 4 sg, 3 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 210, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `mass_matrix` | 111, 2 √, 6 gd |  |
 /// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
-/// | `bias` | 183, 2 √, 4 sg, 6 gd |  |
+/// | `bias` | 179, 2 √, 4 sg, 6 gd |  |
 /// | `bias_base` | 160, 2 √, 4 sg, 6 gd |  |
-/// | `forward_dynamics` | 260, 2 √, 4 sg, 8 gd |  |
-/// | `forward_dynamics_base` | 227, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics` | 251, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics_base` | 220, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// # Names
@@ -3353,7 +3353,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 206 operations (82 additions, 117 multiplications, 7 divisions), 2 square roots, 4 signs, 7 guards, 206 intermediates.
+    /// 203 operations (82 additions, 113 multiplications, 8 divisions), 2 square roots, 4 signs, 7 guards, 203 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3379,8 +3379,6 @@ impl FiveBar {
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
@@ -3390,21 +3388,16 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let a1_x_left = 49.05 * l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         let k_left = 1.0 / det_left;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let g2_vx_left = l1_x_left * k_left;
         let g2_vy_left = l1_y_left * k_left;
@@ -3420,20 +3413,23 @@ impl FiveBar {
         let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t2_left);
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let a1_x_left = 49.05 * l1_y_left;
         let minus_a_on_f2_left = l1_x_left * acceleration[0]
             + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let t3_left = a1_y_left
-            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - parameters[2] * a1_x_left
-            - minus_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
-            + INV_L_2 * (parameters[9] * minus_a_on_f2_left);
-        let tau_1_left = parameters[6]
-            - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
-                + ::overact::math::signed(parameters[5], minus_rate_1_left));
+        let t3_left = parameters[6]
+            + a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - parameters[2] * a1_x_left + INV_L_2 * (parameters[9] * minus_a_on_f2_left)
+            - parameters[4] * minus_rate_1_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = t3_left
+            - ::overact::math::signed(parameters[5], minus_rate_1_left)
+            - minus_rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                    + parameters[3]) - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3455,7 +3451,8 @@ impl FiveBar {
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        let moment2_z_left = rate_dot_2_left * (parameters[7] - L_2 * parameters[8])
+        let moment2_z_left = rate_dot_2_left
+            * (parameters[7] - inv_l_2_mx_2_left * L_2_SQUARED)
             - parameters[9] * a2_x_left;
         let force_on_u2_left = moment2_z_left + tau_2_left;
         // --- right
@@ -3474,6 +3471,7 @@ impl FiveBar {
         let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let minus_rate_dot_2_right = k_right
             * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
@@ -3485,14 +3483,14 @@ impl FiveBar {
         let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
         let minus_moment2_z_right = minus_rate_dot_2_right
-            * (parameters[19] - L_2 * parameters[20]) + parameters[21] * a2_x_right;
+            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+            + parameters[21] * a2_x_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
         let t1_platform = parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
         let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
@@ -3507,15 +3505,15 @@ impl FiveBar {
         let t3 = (g2_vx_left * force_on_u2_left
             + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
         let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let t3_right = rate_dot_1_right
-            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+        let t3_right = parameters[16] * rate_1_right
             + a1_y_right * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - parameters[14] * a1_x_right
             + INV_L_2 * (minus_a_on_f2_right * parameters[21]);
-        let tau_1_right = parameters[15] * rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t3_right + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right + parameters[18]
+            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right
+            + rate_dot_1_right
+                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                    + parameters[15]);
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
             force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
@@ -3532,7 +3530,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 188 operations (72 additions, 110 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 194 intermediates.
+    /// 186 operations (72 additions, 108 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 192 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3598,13 +3596,14 @@ impl FiveBar {
             - parameters[8] * rate_2_squared_left;
         let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
             + parameters[9] * rate_2_squared_left;
-        let t1_left = rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
-            + a1_y_left * (parameters[1] + L_1 * parameters[10])
+        let t1_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
             - parameters[2] * a1_x_left
             + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
-        let tau_1_left = parameters[3] * rate_dot_1_left + parameters[4] * rate_1_left
-            + ::overact::math::signed(parameters[5], rate_1_left) + parameters[6];
-        let force_on_u1_left = minus_tau_2_left + t1_left + tau_1_left;
+        let t2_left = rate_dot_1_left
+            * (parameters[0] + L_1_SQUARED * parameters[10] + parameters[3])
+            + ::overact::math::signed(parameters[5], rate_1_left) + t1_left
+            + parameters[4] * rate_1_left + parameters[6];
+        let force_on_u1_left = minus_tau_2_left + t2_left;
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
@@ -3668,14 +3667,14 @@ impl FiveBar {
             - parameters[20] * rate_2_squared_right;
         let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
             + parameters[21] * rate_2_squared_right;
-        let t1_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
-            + a1_y_right * (parameters[13] + L_1 * parameters[22])
+        let t1_right = a1_y_right * (parameters[13] + L_1 * parameters[22])
             - parameters[14] * a1_x_right
             + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
-        let tau_1_right = parameters[15] * rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t1_right + tau_1_right;
+        let t2_right = parameters[18] + t1_right + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right)
+            + rate_dot_1_right
+                * (parameters[12] + L_1_SQUARED * parameters[22] + parameters[15]);
+        let force_on_u1_right = minus_tau_2_right + t2_right;
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
             force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
@@ -3692,7 +3691,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 232 operations (92 additions, 132 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 235 intermediates.
+    /// 230 operations (92 additions, 130 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 233 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3713,8 +3712,6 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_2
         const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
@@ -3730,8 +3727,6 @@ impl FiveBar {
         /// 2 l_2
         const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -3742,6 +3737,8 @@ impl FiveBar {
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -3788,10 +3785,9 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
@@ -3801,10 +3797,9 @@ impl FiveBar {
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         let minus_dvx = t2
@@ -3817,20 +3812,20 @@ impl FiveBar {
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
         let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
             - minus_bias_a_on_f2_left;
-        let t4_left = actuator_accelerations[0]
-            * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
-            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - bias_a1_x_left * parameters[2] - INV_L_2 * (parameters[9] * a_on_f2_left);
-        let tau_1_left = actuator_accelerations[0] * parameters[3]
-            + actuator_velocities[0] * parameters[4]
-            + ::overact::math::signed(parameters[5], actuator_velocities[0])
-            + parameters[6];
+        let t3_left = bias_a1_y_left
+            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - bias_a1_x_left * parameters[2] - INV_L_2 * (parameters[9] * a_on_f2_left)
+            + actuator_velocities[0] * parameters[4];
         let qd_2_left = rate_2_left - actuator_velocities[0];
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = parameters[6]
+            + ::overact::math::signed(parameters[5], actuator_velocities[0]) + t3_left
+            + actuator_accelerations[0]
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                    + parameters[3]) - tau_2_left;
         let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
+        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
@@ -3842,8 +3837,8 @@ impl FiveBar {
         let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
             - minus_bias_a_on_f2_right;
         let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
+            * (a_on_f2_right - rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
@@ -3865,17 +3860,16 @@ impl FiveBar {
             * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
                 - minus_force_x_platform);
         let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let t4_right = actuator_accelerations[1]
-            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+        let t3_right = actuator_velocities[1] * parameters[16]
             + bias_a1_y_right
                 * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - bias_a1_x_right * parameters[14]
             - INV_L_2 * (a_on_f2_right * parameters[21]);
-        let tau_1_right = actuator_accelerations[1] * parameters[15]
-            + actuator_velocities[1] * parameters[16]
-            + ::overact::math::signed(parameters[17], actuator_velocities[1])
-            + parameters[18];
-        let force_on_u1_right = t4_right + tau_1_right - tau_2_right;
+        let force_on_u1_right = actuator_accelerations[1]
+            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                + parameters[15])
+            + ::overact::math::signed(parameters[17], actuator_velocities[1]) + t3_right
+            + parameters[18] - tau_2_right;
         ::core::result::Result::Ok([
             force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
             force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
@@ -4603,7 +4597,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 183 operations (71 additions, 108 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 183 intermediates.
+    /// 179 operations (71 additions, 102 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 179 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4625,8 +4619,6 @@ impl FiveBar {
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
@@ -4636,9 +4628,8 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -4661,6 +4652,7 @@ impl FiveBar {
         let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = k_left
             * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
         let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
@@ -4670,31 +4662,29 @@ impl FiveBar {
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = bias_rate_dot_2_left * (parameters[7] - L_2 * parameters[8])
+        let moment2_z_left = bias_rate_dot_2_left
+            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
             - parameters[9] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
         let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let t3_left = bias_a1_y_left
-            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+        let t3_left = parameters[6]
+            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
             - parameters[2] * bias_a1_x_left
+            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
+            - parameters[4] * minus_rate_1_left;
+        let force_on_u1_left = t3_left
+            - ::overact::math::signed(parameters[5], minus_rate_1_left)
             - minus_bias_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
-            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9]);
-        let tau_1_left = parameters[6]
-            - (parameters[3] * minus_bias_rate_dot_1_left
-                + parameters[4] * minus_rate_1_left
-                + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                    + parameters[3]) - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -4727,16 +4717,16 @@ impl FiveBar {
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let t3_right = bias_rate_dot_1_right
-            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+        let t3_right = parameters[16] * rate_1_right
             + bias_a1_y_right
                 * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - parameters[14] * bias_a1_x_right
             + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
-        let tau_1_right = parameters[15] * bias_rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t3_right + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right
+            + bias_rate_dot_1_right
+                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                    + parameters[15]) + parameters[18]
+            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right;
         let minus_bias_rate_dot_2_right = k_right
             * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
@@ -4744,7 +4734,8 @@ impl FiveBar {
         let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
         let minus_moment2_z_right = minus_bias_rate_dot_2_right
-            * (parameters[19] - L_2 * parameters[20]) + parameters[21] * bias_a2_x_right;
+            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+            + parameters[21] * bias_a2_x_right;
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
         let force_y_platform = 9.81
             * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
@@ -4921,7 +4912,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 260 operations (103 additions, 149 multiplications, 8 divisions), 2 square roots, 4 signs, 8 guards, 260 intermediates.
+    /// 251 operations (101 additions, 137 multiplications, 13 divisions), 2 square roots, 4 signs, 8 guards, 251 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4938,8 +4929,6 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_2
         const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
@@ -4965,67 +4954,6 @@ impl FiveBar {
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
-        let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let c2_left = INV_HALF * t2_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = bias_rate_dot_2_left
-            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
-            - parameters[9] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let t4_left = bias_a1_y_left
-            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - parameters[2] * bias_a1_x_left
-            - minus_bias_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left)
-            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9]);
-        let tau_1_left = parameters[6]
-            - (parameters[3] * minus_bias_rate_dot_1_left
-                + parameters[4] * minus_rate_1_left
-                + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
-        // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
@@ -5042,28 +4970,87 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
         let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let t4_right = bias_rate_dot_1_right
-            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right)
+        let t3_right = parameters[16] * rate_1_right
             + bias_a1_y_right
                 * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
             - parameters[14] * bias_a1_x_right
             + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
-        let tau_1_right = parameters[15] * bias_rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right
+            + bias_rate_dot_1_right
+                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                    + parameters[15]) + parameters[18]
+            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right;
+        let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let minus_g1_vx_left = l2_x_left / det_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let t2_left = parameters[6]
+            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+            - parameters[2] * bias_a1_x_left
+            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
+            - parameters[4] * minus_rate_1_left;
+        let g2_vx_left = l1_x_left / det_left;
+        let g2_vy_left = l1_y_left / det_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let t3_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+            + rate_1_squared_left * t3_left) / det_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u1_left = t2_left
+            - ::overact::math::signed(parameters[5], minus_rate_1_left)
+            - minus_bias_rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                    + parameters[3]) - tau_2_left;
+        let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
+        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
+            + rate_2_squared_left * t3_left) / det_left;
+        let c2_left = t3_left * L_1_PER_HALF_SQUARED;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = bias_rate_dot_2_left
+            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
+            - parameters[9] * bias_a2_x_left;
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        // --- right
         let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
@@ -5071,9 +5058,9 @@ impl FiveBar {
             * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
             + parameters[21] * bias_a2_x_right;
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
-            - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-                + g1_vx_right * force_on_u1_right
+        let t1 = g1_vx_right * tau1_minus_force_on_u1_right
+            + minus_g1_vx_left * force_on_u1_minus_tau1_left
+            - (g2_vx_left * force_on_u2_left
                 + minus_g2_vx_right * minus_force_on_u2_right);
         let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
@@ -5083,7 +5070,7 @@ impl FiveBar {
             + parameters[15];
         let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
         let masses_right_1_2 = L_1 * force1_y_by_2_right;
-        let t5_right = g2_vx_left
+        let t4_right = g2_vx_left
             * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
                 * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
@@ -5091,28 +5078,28 @@ impl FiveBar {
                 * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
                 * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
-        let mass_1_1 = t5_right + parameters[24];
+        let mass_1_1 = t4_right + parameters[24];
         ::overact::guard::mass(mass_1_1)?;
-        let t5_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
-        let t6_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
-        let t6_right = g1_vy_right * masses_right_1_1
+        let t4_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t5_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
+        let t5_right = g1_vy_right * masses_right_1_1
             - minus_g2_vy_right * masses_right_1_2;
-        let t7_right = g1_vy_right * masses_right_1_2
+        let t6_right = g1_vy_right * masses_right_1_2
             - minus_g2_vy_right * parameters[19];
-        let mass_1_2 = g2_vx_left * t5_left - minus_g1_vx_left * t6_left
-            + g1_vx_right * t6_right - minus_g2_vx_right * t7_right;
+        let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
+            + g1_vx_right * t5_right - minus_g2_vx_right * t6_right;
         let l_2_1 = mass_1_2 / mass_1_1;
         let force_y_platform = 9.81
             * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
-        let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
-            - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right
-                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform);
-        let mass_2_2 = g2_vy_left * t5_left - minus_g1_vy_left * t6_left
-            + g1_vy_right * t6_right - minus_g2_vy_right * t7_right + parameters[24];
+        let t2 = minus_g1_vy_left * force_on_u1_minus_tau1_left
+            - (force_y_platform + g2_vy_left * force_on_u2_left
+                + minus_g2_vy_right * minus_force_on_u2_right)
+            + g1_vy_right * tau1_minus_force_on_u1_right - t1 * l_2_1;
+        let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
+            + g1_vy_right * t5_right - minus_g2_vy_right * t6_right + parameters[24];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        let t3 = t2 / pivot_2;
         ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -5125,7 +5112,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 227 operations (85 additions, 132 multiplications, 10 divisions), 2 square roots, 4 signs, 8 guards, 227 intermediates.
+    /// 220 operations (83 additions, 121 multiplications, 16 divisions), 2 square roots, 4 signs, 8 guards, 220 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5165,62 +5152,6 @@ impl FiveBar {
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
-        let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-            - base_parameters[15] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
-        let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let tau_1_left = base_parameters[11]
-            - (base_parameters[7] * minus_rate_1_left
-                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[5] * bias_a1_x_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
-            - tau_2_left;
-        // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
@@ -5252,8 +5183,54 @@ impl FiveBar {
         let force_on_u1_right = minus_tau_2_right
             + base_parameters[2] * bias_rate_dot_1_right
             + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            + minus_masses_right_1_2 * (k_right * minus_bias_a_on_f2_right)
+            + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
             + tau_1_right;
+        let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let g2_vx_left = l1_x_left / det_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left / det_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left / det_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
+            + rate_2_squared_left * t2_left) / det_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+            + rate_1_squared_left * t2_left) / det_left;
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+            - base_parameters[15] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        // --- right
         let minus_bias_rate_dot_2_right = k_right
             * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
@@ -5262,9 +5239,21 @@ impl FiveBar {
         let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
             + base_parameters[16] * bias_a2_x_right;
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
-            - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-                + g1_vx_right * force_on_u1_right
+        // --- left
+        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        let tau_1_left = base_parameters[11]
+            - (base_parameters[7] * minus_rate_1_left
+                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
+        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[5] * bias_a1_x_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
+            - tau_2_left;
+        let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
+        let t1 = g1_vx_right * tau1_minus_force_on_u1_right
+            + minus_g1_vx_left * force_on_u1_minus_tau1_left
+            - (g2_vx_left * force_on_u2_left
                 + minus_g2_vx_right * minus_force_on_u2_right);
         let t3_right = g2_vx_left
             * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
@@ -5290,15 +5279,15 @@ impl FiveBar {
             + g1_vx_right * t4_right + minus_g2_vx_right * t5_right;
         let l_2_1 = mass_1_2 / mass_1_1;
         let force_y_platform = 9.81 * base_parameters[0];
-        let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
-            - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right
-                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform);
+        let t2 = g1_vy_right * tau1_minus_force_on_u1_right
+            + minus_g1_vy_left * force_on_u1_minus_tau1_left
+            - (force_y_platform + g2_vy_left * force_on_u2_left
+                + minus_g2_vy_right * minus_force_on_u2_right) - t1 * l_2_1;
         let mass_2_2 = g2_vy_left * t3_left - minus_g1_vy_left * t4_left
             + g1_vy_right * t4_right + minus_g2_vy_right * t5_right + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        let t3 = t2 / pivot_2;
         ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.

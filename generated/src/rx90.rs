@@ -21,7 +21,7 @@
 /// | `idm_red_platform` | 623, 5 sc, 6 sg |  |
 /// | `idm_red_platform_base` | 601, 5 sc, 6 sg |  |
 /// | `project_platform` | 0 |  |
-/// | `inverse_dynamics` | 549, 5 sc, 6 sg |  |
+/// | `inverse_dynamics` | 548, 5 sc, 6 sg |  |
 /// | `inverse_dynamics_base` | 522, 5 sc, 6 sg |  |
 /// | `mass_matrix` | 244, 5 sc |  |
 /// | `mass_matrix_base` | 226, 5 sc |  |
@@ -1383,7 +1383,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 549 operations (281 additions, 268 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 553 intermediates.
+    /// 548 operations (281 additions, 267 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 552 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1624,14 +1624,11 @@ impl Rx90 {
             + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
             - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
             - D3 * force3_z_arm;
-        let moment1_z_arm = joint_accelerations[0]
-            * (parameters[0] + parameters[20] + t4_arm) + s2_arm * moment2_x_arm
-            + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_accelerations[0] * parameters[1]
+        let force_on_u1_arm = joint_accelerations[0]
+            * (parameters[0] + parameters[20] + t4_arm + parameters[1]) + parameters[4]
+            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
             + joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            + ::overact::math::signed(parameters[3], joint_velocities[0]);
         let t26_arm = joint_accelerations[1] * t6_arm - w2_x_w2_y_arm * t5_arm
             + parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
             + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + parameters[9] * u2_xz_arm;

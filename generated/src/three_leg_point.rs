@@ -39,18 +39,18 @@
 /// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 10 gd |  |
-/// | `inverse_dynamics` | 294, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_from_joints` | 258, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 367, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics` | 291, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_from_joints` | 255, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_from_actuators` | 362, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
 /// | `inverse_dynamics_base` | 268, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 233, 6 sc, 6 sg, 5 gd |  |
 /// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
-/// | `bias` | 230, 3 √, 6 sg, 9 gd |  |
+/// | `bias` | 227, 3 √, 6 sg, 9 gd |  |
 /// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
-/// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
-/// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics` | 359, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 293, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_preloaded` | 317, 4 √, 6 sg, 11 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
@@ -4125,7 +4125,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 294 operations (120 additions, 165 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 296 intermediates.
+    /// 291 operations (120 additions, 162 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 293 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4177,24 +4177,23 @@ impl ThreeLegPoint {
             + minus_g2_vy_leg1 * twist[1];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
             - L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let minus_rate_dot_1_leg1 = k_leg1
             * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
         let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
-        let tau_1_leg1 = parameters[2] * rate_1_leg1
-            - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
+        let t2_leg1 = parameters[4] + ::overact::math::signed(parameters[3], rate_1_leg1)
+            + a_on_f2_leg1 * my_2_leg1_inv_l_1 + parameters[2] * rate_1_leg1
             - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1))
-            + tau_1_leg1;
+                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
+                    + parameters[1]);
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
@@ -4248,13 +4247,13 @@ impl ThreeLegPoint {
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
         let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-        let tau_1_leg2 = parameters[12] * rate_1_leg2
-            - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+        let t3_leg2 = parameters[14]
+            + ::overact::math::signed(parameters[13], rate_1_leg2)
+            + parameters[17] * a_on_f2_leg2 + parameters[12] * rate_1_leg2
             - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2))
-            + tau_1_leg2 - tau_2_leg2;
+                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
+                    + parameters[11]);
+        let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
         // --- leg3
         let t2_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
@@ -4299,23 +4298,25 @@ impl ThreeLegPoint {
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
         let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
-        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3))
-            + minus_a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = parameters[24]
+            + ::overact::math::signed(parameters[23], rate_1_leg3)
+            + minus_a_on_f2_leg3 * parameters[27] + parameters[22] * rate_1_leg3
+            + rate_dot_1_leg3
+                * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
+                    + parameters[21]);
+        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
             - (minus_g2_vy_leg3 * force_on_u2_leg3
                 + minus_g1_vy_leg3 * force_on_u1_leg3);
         let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
             + inv_l_1_mx_2_leg2;
         let force_y_platform = acceleration[1] * t1_platform;
-        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * t1_platform;
-        let t2_platform = t4_leg3 + force_x_platform;
+        let t2_platform = t5_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -4334,7 +4335,7 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let t1 = (t3_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
+        let t1 = (t4_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
         let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
@@ -4352,7 +4353,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 258 operations (101 additions, 151 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 267 intermediates.
+    /// 255 operations (101 additions, 148 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 264 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4388,12 +4389,6 @@ impl ThreeLegPoint {
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let k_leg1 = INV_L_1 / s2_leg1;
         let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
         let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
         let g2_vx_leg1 = s1_leg1 * k_leg1;
         let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
@@ -4401,18 +4396,23 @@ impl ThreeLegPoint {
         let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
         let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
         let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
         let minus_rate_dot_1_leg1 = k_leg1
             * (a_on_f1_leg1 - l_1_rate_1_squared_leg1 * c2_leg1);
         let l_1_mx_2_leg1 = L_1 * parameters[6];
-        let tau_1_leg1 = parameters[2] * rate_1_leg1
-            - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + l_1_rate_1_squared_leg1;
+        let t1_leg1 = parameters[7] * a_on_f2_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
+            - minus_rate_dot_1_leg1
+                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
+                    + parameters[1]);
         let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
         let tau_2_leg1 = ::overact::math::signed(parameters[9], qd_2_leg1);
-        let force_on_u1_leg1 = parameters[7] * a_on_f2_leg1
-            - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1)
-            + tau_1_leg1 - tau_2_leg1;
+        let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
             * (a_on_f2_leg1 + c2_leg1 * l_1_rate_2_squared_leg1);
         let moment2_z_leg1 = parameters[7] * a_on_f1_leg1
@@ -4451,13 +4451,13 @@ impl ThreeLegPoint {
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
-        let tau_1_leg2 = parameters[12] * rate_1_leg2
-            - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+        let t1_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
+            + parameters[12] * rate_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2)
             - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2)
-            + tau_1_leg2 - tau_2_leg2;
+                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
+                    + parameters[11]);
+        let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
         // --- leg3
         let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
         let k_leg3 = INV_L_1 / s2_leg3;
@@ -4491,22 +4491,23 @@ impl ThreeLegPoint {
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
-        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3)
-            - a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
-        let t1_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t1_leg3 = rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
+                + parameters[21]) + ::overact::math::signed(parameters[23], rate_1_leg3)
+            + parameters[22] * rate_1_leg3 - a_on_f2_leg3 * parameters[27]
+            + parameters[24];
+        let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
+        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         let t1_platform = parameters[30]
             + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
         let force_y_platform = acceleration[1] * t1_platform;
-        let t2_leg3 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
+        let t3_leg3 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
             + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * t1_platform;
-        let t2_platform = t2_leg3 + force_x_platform;
+        let t2_platform = t3_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -4525,7 +4526,7 @@ impl ThreeLegPoint {
             26.146658848631322,
             ::overact::ActuatorGroup::All,
         )?;
-        let t1 = (t1_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
+        let t1 = (t2_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
         let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
@@ -4543,7 +4544,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 367 operations (153 additions, 202 multiplications, 12 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 370 intermediates.
+    /// 362 operations (153 additions, 189 multiplications, 20 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 365 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -4586,12 +4587,11 @@ impl ThreeLegPoint {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let g1_vy_leg1 = l2_x_leg1 / det_leg1;
         let half_x = 0.5 * pose[0];
-        let t1_leg3 = pose[1] * 0.8660254037844386;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
         // --- leg2
-        let d_y_leg2 = half_x - t1_leg3;
+        let d_y_leg2 = pose[0] - d_y_leg3;
         let t1_leg2 = pose[0] + 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
@@ -4610,9 +4610,8 @@ impl ThreeLegPoint {
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
-        let d_y_leg3 = half_x + t1_leg3;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -4626,11 +4625,9 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 / det_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
@@ -4646,31 +4643,31 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let minus_l_2_1 = minus_s_1_2 / s_1_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let vy = inv_pivot_2
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+        let vy = (g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
         let vx = t1 / s_1_1 + minus_l_2_1 * vy;
         // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 / det_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 / det_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let t3_leg3 = y_plus_half_radius * INV_L_1;
+        let t2_leg3 = y_plus_half_radius * INV_L_1;
         // --- leg2
-        let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
+        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
         let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
         let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
@@ -4691,13 +4688,13 @@ impl ThreeLegPoint {
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+        let bias_rate_dot_1_leg1 = (minus_bias_a_on_f1_leg1 + t2_leg1) / det_leg1;
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
@@ -4713,27 +4710,27 @@ impl ThreeLegPoint {
         let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = inv_pivot_2
-            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
+            / pivot_2;
         let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
         // --- leg1
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = (a_on_f1_leg1 - t2_leg1) / det_leg1;
+        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
         let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
         let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
-        let tau_1_leg1 = rate_1_leg1 * parameters[2]
-            - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+        let t3_leg1 = parameters[4] + a_on_f2_leg1 * my_2_leg1_inv_l_1
+            + rate_1_leg1 * parameters[2]
+            + ::overact::math::signed(parameters[3], rate_1_leg1)
             - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1))
-            + tau_1_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
+                    + parameters[1]);
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
+        let minus_rate_dot_2_leg1 = (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1)
+            / det_leg1;
         let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
             - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
@@ -4752,13 +4749,13 @@ impl ThreeLegPoint {
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
         let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-        let tau_1_leg2 = rate_1_leg2 * parameters[12]
-            - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+        let t3_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
+            + rate_1_leg2 * parameters[12]
+            + ::overact::math::signed(parameters[13], rate_1_leg2)
             - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2))
-            + tau_1_leg2 - tau_2_leg2;
+                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
+                    + parameters[11]);
+        let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
         // --- leg3
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
@@ -4774,11 +4771,12 @@ impl ThreeLegPoint {
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
         let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
         let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
-        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + rate_1_leg3 * parameters[22]
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3))
-            + minus_a_on_f2_leg3 * parameters[27] + tau_1_leg3 - tau_2_leg3;
+        let t3_leg3 = rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
+                + parameters[21]) + parameters[24] + minus_a_on_f2_leg3 * parameters[27]
+            + rate_1_leg3 * parameters[22]
+            + ::overact::math::signed(parameters[23], rate_1_leg3);
+        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
         let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
             - (minus_g2_vy_leg3 * force_on_u2_leg3
@@ -4791,7 +4789,7 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = dvx * t1_platform;
         let t2_platform = t5_leg3 + force_x_platform;
-        let t3 = inv_pivot_2 * (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform);
+        let t3 = (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform) / pivot_2;
         let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
@@ -5778,7 +5776,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 230 operations (93 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 232 intermediates.
+    /// 227 operations (93 additions, 128 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 229 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5839,13 +5837,13 @@ impl ThreeLegPoint {
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
             * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
+        let t2_leg1 = parameters[4] + rate_1_squared_leg1 * l_1_my_2_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1)
             + bias_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1)
-            + rate_1_squared_leg1 * l_1_my_2_leg1 + tau_1_leg1;
+                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
+                    + parameters[1]);
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
         // --- leg2
         let t1_leg2 = pose[0] + 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -5871,30 +5869,31 @@ impl ThreeLegPoint {
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
+        let t3_leg2 = INV_L_1 * y_plus_half_radius;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
         let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let t3_leg2 = INV_L_1 * y_plus_half_radius;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg2 = k_leg2
             * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
         let l_1_mx_2_leg2 = L_1 * parameters[16];
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let t4_leg2 = parameters[14]
+            + ::overact::math::signed(parameters[13], rate_1_leg2)
+            + parameters[17] * bias_a_on_f2_leg2 + parameters[12] * rate_1_leg2
+            + bias_rate_dot_1_leg2
+                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
+                    + parameters[11]);
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2
-            * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2)
-            + parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+        let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
             * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let minus_moment2_z_leg2 = minus_bias_rate_dot_2_leg2
@@ -5933,29 +5932,29 @@ impl ThreeLegPoint {
             * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
         let l_1_mx_2_leg3 = L_1 * parameters[26];
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
+        let t2_leg3 = bias_rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
+                + parameters[21]) + parameters[27] * minus_bias_a_on_f2_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
-        let force_on_u1_leg3 = bias_rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3)
-            + parameters[27] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let minus_moment2_z_leg3 = minus_bias_rate_dot_2_leg3
             * (parameters[25] - l_1_mx_2_leg3) + bias_a_on_f1_leg3 * parameters[27];
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+        let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
             - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
             - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
             - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg2 * force_on_u1_leg2
             - (minus_g2_vy_leg3 * force_on_u2_leg3
                 + minus_g1_vy_leg3 * force_on_u1_leg3);
-        ::core::result::Result::Ok([t2_leg3, t3_leg3])
+        ::core::result::Result::Ok([t3_leg3, t4_leg3])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -6159,7 +6158,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 374 operations (145 additions, 220 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 375 intermediates.
+    /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 360 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6186,26 +6185,6 @@ impl ThreeLegPoint {
         const RADIUS: ::core::primitive::f64 = 0.35;
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -6217,68 +6196,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let t3_leg2 = parameters[10] + L_1_SQUARED * parameters[18];
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2;
-        let c2_leg2 = 8.680555555555555 * t2_leg2;
-        let t4_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
-        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let minus_force2_y_leg2 = t4_leg2 + my_2_leg2_rate_2_squared_leg2;
-        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t3_leg2
-            + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-            + tau_1_leg2 - tau_2_leg2;
-        let moment2_z_leg2 = L_1 * (t4_leg2 - my_2_leg2_rate_2_squared_leg2)
-            - parameters[15] * minus_bias_rate_dot_2_leg2;
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        // --- leg1
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
@@ -6289,84 +6208,163 @@ impl ThreeLegPoint {
             + minus_g2_vy_leg1 * twist[1];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
         let c2_leg1 = 8.680555555555555 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + bias_a_on_f2_leg1 * c2_leg1);
-        let t2_leg1 = parameters[0] + L_1_SQUARED * parameters[8];
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
             * (bias_a_on_f2_leg1 + minus_bias_a_on_f1_leg1 * c2_leg1);
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
-        let t3_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
+        let t2_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
         let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let minus_force2_y_leg1 = t3_leg1 + my_2_leg1_rate_2_squared_leg1;
-        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + bias_rate_dot_1_leg1 * t2_leg1
+        let minus_force2_y_leg1 = t2_leg1 + my_2_leg1_rate_2_squared_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + bias_a_on_f2_leg1 * c2_leg1);
+        let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
+            + parameters[1];
+        let t3_leg1 = ::overact::math::signed(parameters[3], rate_1_leg1)
             + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + tau_1_leg1;
-        let moment2_z_leg1 = L_1 * (t3_leg1 - my_2_leg1_rate_2_squared_leg1)
-            - parameters[5] * minus_bias_rate_dot_2_leg1;
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            + parameters[2] * rate_1_leg1 + parameters[4]
+            + bias_rate_dot_1_leg1 * masses_leg1_1_1;
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
+        let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2;
+        let c2_leg2 = 8.680555555555555 * t2_leg2;
+        let t3_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
+        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
+        let minus_force2_y_leg2 = t3_leg2 + my_2_leg2_rate_2_squared_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
+            + parameters[11];
+        let t4_leg2 = parameters[14]
+            + ::overact::math::signed(parameters[13], rate_1_leg2)
+            + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            + parameters[12] * rate_1_leg2 + bias_rate_dot_1_leg2 * masses_leg2_1_1;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
+        let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
         let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
         let c2_leg3 = 8.680555555555555 * t2_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
-        let t3_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
-        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
-            - parameters[26] * rate_2_squared_leg3;
-        let t4_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t4_leg3 + my_2_leg3_rate_2_squared_leg3;
-        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
+            - parameters[25] * minus_bias_rate_dot_2_leg3;
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t3_leg3
-            + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + tau_1_leg3 - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * (t4_leg3 - my_2_leg3_rate_2_squared_leg3)
-            - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t5_leg3;
-        let masses_leg2_1_1 = t3_leg2 + parameters[11];
+        let moment2_z_leg2 = L_1 * (t3_leg2 - my_2_leg2_rate_2_squared_leg2)
+            - parameters[15] * minus_bias_rate_dot_2_leg2;
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let moment2_z_leg1 = L_1 * (t2_leg1 - my_2_leg1_rate_2_squared_leg1)
+            - parameters[5] * minus_bias_rate_dot_2_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
+            - parameters[26] * rate_2_squared_leg3;
+        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
+        let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
+            + parameters[21];
+        let t4_leg3 = parameters[24]
+            + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3)
+            + bias_rate_dot_1_leg3 * masses_leg3_1_1;
+        let force_on_u1_leg3 = t4_leg3 - tau_2_leg3;
+        let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
+        let t1 = minus_g1_vx_leg1 * force_on_u1_minus_tau1_leg1
+            + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
+            + minus_g2_vx_leg3 * force_on_u2_leg3 + minus_g2_vx_leg2 * force_on_u2_leg2
+            + minus_g2_vx_leg1 * force_on_u2_leg1
+            + g1_vx_leg3 * tau1_minus_force_on_u1_leg3;
         let minus_masses_leg2_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg2 * parameters[17])
                 - 85.15625 * (t2_leg2 * parameters[16]));
         let minus_masses_leg1_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg1 * parameters[7])
                 - 85.15625 * (t1_leg1 * parameters[6]));
-        let masses_leg1_1_1 = t2_leg1 + parameters[1];
         let t5_leg2 = g1_vx_leg2
             * (g1_vx_leg2 * masses_leg2_1_1 + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
@@ -6378,18 +6376,17 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg1
                     * (minus_g1_vx_leg1 * minus_masses_leg1_1_2
                         - minus_g2_vx_leg1 * parameters[5]));
-        let masses_leg3_1_1 = t3_leg3 + parameters[21];
         let minus_masses_leg3_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg3 * parameters[27])
                 - 85.15625 * (t2_leg3 * parameters[26]));
-        let t6_leg3 = t5_leg2
+        let t5_leg3 = t5_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
                 * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * parameters[25]);
-        let mass_1_1 = t6_leg3 + parameters[30];
+        let mass_1_1 = t5_leg3 + parameters[30];
         ::overact::guard::mass(mass_1_1)?;
         let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * parameters[5];
@@ -6399,26 +6396,26 @@ impl ThreeLegPoint {
             + g2_vy_leg2 * minus_masses_leg2_1_2;
         let t7_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
             + g2_vy_leg2 * parameters[15];
-        let t7_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
+        let t6_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
             + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t8_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+        let t7_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             + g2_vy_leg3 * parameters[25];
         let mass_1_2 = minus_g2_vx_leg1 * t4_leg1 - minus_g1_vx_leg1 * t5_leg1
             - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
-            - (g1_vx_leg3 * t7_leg3 + minus_g2_vx_leg3 * t8_leg3);
+            - (g1_vx_leg3 * t6_leg3 + minus_g2_vx_leg3 * t7_leg3);
         let l_2_1 = mass_1_2 / mass_1_1;
-        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t10_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
+        let t2 = minus_g2_vy_leg1 * force_on_u2_leg1 - g2_vy_leg2 * force_on_u2_leg2
+            - g2_vy_leg3 * force_on_u2_leg3 - g1_vy_leg1 * force_on_u1_minus_tau1_leg1
+            - minus_g1_vy_leg2 * tau1_minus_force_on_u1_leg2
+            - minus_g1_vy_leg3 * tau1_minus_force_on_u1_leg3;
+        let t8_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
             + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
-            + minus_g1_vy_leg3 * t7_leg3 + g2_vy_leg3 * t8_leg3;
-        let mass_2_2 = t10_leg3 + parameters[30];
+            + minus_g1_vy_leg3 * t6_leg3 + g2_vy_leg3 * t7_leg3;
+        let mass_2_2 = t8_leg3 + parameters[30];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t2, t2])
+        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -6430,7 +6427,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 306 operations (119 additions, 179 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 308 intermediates.
+    /// 293 operations (116 additions, 169 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 295 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6458,123 +6455,25 @@ impl ThreeLegPoint {
         const RADIUS: ::core::primitive::f64 = 0.35;
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
-        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let force_on_u1_leg1 = minus_tau_2_leg1
-            + base_parameters[1] * bias_rate_dot_1_leg1
-            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
-        // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let t3_leg2 = y_plus_half_radius * INV_L_1;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
-        let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
-            + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
-            + minus_bias_a_on_f1_leg2 * base_parameters[17];
-        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
-        // --- leg3
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
+        let t2_leg2 = y_plus_half_radius * INV_L_1;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg2;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
@@ -6596,69 +6495,162 @@ impl ThreeLegPoint {
         let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
         let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
             + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
+        // --- leg2
+        let t3_leg2 = pose[0] + 0.3031088913245535;
+        let minus_d_x_leg2 = 0.8660254037844386 * t3_leg2 + t1_leg2;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = t3_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg2;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
+            + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+        let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let force_on_u1_leg1 = minus_tau_2_leg1
+            + base_parameters[1] * bias_rate_dot_1_leg1
+            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
+        let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
             + bias_a_on_f1_leg3 * base_parameters[18];
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
-            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
-            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
-            - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t2_leg3;
-        let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
+            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
+        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
+            + minus_bias_a_on_f1_leg2 * base_parameters[17];
+        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+        let t1 = g1_vx_leg3 * tau1_minus_force_on_u1_leg3
+            + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
+            + minus_g1_vx_leg1 * force_on_u1_minus_tau1_leg1
+            + minus_g2_vx_leg3 * force_on_u2_leg3 + minus_g2_vx_leg2 * force_on_u2_leg2
+            - minus_g2_vx_leg1 * minus_force_on_u2_leg1;
         let t4_leg2 = minus_g2_vx_leg1
             * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
             - minus_g1_vx_leg1
                 * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2]
-                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
             + minus_g2_vx_leg2
-                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                * (minus_fk1_x_leg2 * base_parameters[17]
                     + minus_g2_vx_leg2 * base_parameters[14]);
-        let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
-        let t3_leg3 = t4_leg2
+        let t2_leg3 = t4_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
-                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+                    + minus_fk2_x_leg3 * base_parameters[18])
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                * (fk1_x_leg3 * base_parameters[18]
                     + minus_g2_vx_leg3 * base_parameters[15]);
-        let mass_1_1 = t3_leg3 + base_parameters[0];
+        let mass_1_1 = t2_leg3 + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
         let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
             + minus_g2_vy_leg1 * base_parameters[13];
         let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
-        let t5_leg2 = g2_vy_leg2 * minus_masses_leg2_1_2
+        let t5_leg2 = minus_fk2_y_leg2 * base_parameters[17]
             - g1_vy_leg2 * base_parameters[2];
         let t6_leg2 = g2_vy_leg2 * base_parameters[14]
-            - g1_vy_leg2 * minus_masses_leg2_1_2;
-        let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            - minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+            - minus_fk1_y_leg2 * base_parameters[17];
+        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            - minus_fk2_y_leg3 * base_parameters[18];
+        let t4_leg3 = minus_fk1_y_leg3 * base_parameters[18]
             - minus_g2_vy_leg3 * base_parameters[15];
         let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
             - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
-            - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
+            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
-            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            + g1_vy_leg2 * force_on_u1_leg2
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t4_leg3
-            - minus_g2_vy_leg3 * t5_leg3;
-        let mass_2_2 = t7_leg3 + base_parameters[0];
+        let t2 = g1_vy_leg2 * tau1_minus_force_on_u1_leg2
+            + minus_g2_vy_leg3 * force_on_u2_leg3
+            - (minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2)
+            - g1_vy_leg1 * force_on_u1_minus_tau1_leg1
+            - minus_g1_vy_leg3 * tau1_minus_force_on_u1_leg3;
+        let t5_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t3_leg3
+            - minus_g2_vy_leg3 * t4_leg3;
+        let mass_2_2 = t5_leg3 + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t2 = (g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
+        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
