@@ -101,7 +101,7 @@ impl Assembler<'_> {
         if best.operations < start.operations {
             forms.push(best.clone());
         }
-        let other = self.from_first_axes(&start, &best, &changes, function, from)?;
+        let other = self.starting_from_first_axes(&start, &best, &changes, function, from)?;
         forms.extend(self.promising(function, from, trials, &best)?);
         forms.extend(other);
         Ok(forms)
@@ -169,7 +169,7 @@ impl Assembler<'_> {
     /// The best form that changes lead to from the first axes of all legs, where legs differ in shape and a short
     /// search makes it cheaper than the best one: what suits one shape may be no better with what the robot's
     /// formulation has for the others.
-    fn from_first_axes(
+    fn starting_from_first_axes(
         &self,
         start: &Form,
         best: &Form,
