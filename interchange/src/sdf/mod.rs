@@ -161,11 +161,11 @@ fn models(
             source,
         });
     }
-    if all.iter().all(|found| found.is_static) {
-        if let Some((uri, place)) = elsewhere.first() {
-            include::refuse(files, uri, place);
-            return None;
-        }
+    if all.iter().all(|found| found.is_static)
+        && let Some((uri, place)) = elsewhere.first()
+    {
+        include::refuse(files, uri, place);
+        return None;
     }
     if !elsewhere.is_empty() {
         let list: Vec<String> = elsewhere
