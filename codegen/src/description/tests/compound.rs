@@ -118,8 +118,11 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
     assert_eq!(made(&leg("planar", &keys)), made(&written(&one_by_one)));
 }
 
+/// Name, kind, variable and motor of an axis.
+type Axis = (String, JointKind, Vec<(usize, f64)>, bool);
+
 /// What joint 1 of the leg is, a slide, with its follow-up: variables of both, and whether they are driven.
-fn screw(keys: &str) -> Vec<(String, JointKind, Vec<(usize, f64)>, bool)> {
+fn screw(keys: &str) -> Vec<Axis> {
     let of_joint = |joint: &Joint| {
         let variable = joint
             .variable
