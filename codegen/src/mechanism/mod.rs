@@ -18,6 +18,7 @@ mod parasitic;
 mod reach;
 mod singular_values;
 pub(crate) mod states;
+mod still;
 mod structure;
 #[cfg(test)]
 mod tests;
