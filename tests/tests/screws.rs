@@ -143,7 +143,7 @@ fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
 /// follows from the orientation of a rod, and no equation its slide: Newton's method finds both.
 #[test]
 fn chains_are_solved_for_screws() -> Result<(), Failure> {
-    for drive in ["actuated = true", "parameters = [\"fv\", \"m\", \"mx\"]"] {
+    for drive in ["actuated = true", "parameters = [\"fv\", \"m\"]"] {
         let text = driven(
             &format!("type = \"helical\"\npitch = \"0.5 m\"\n{drive}"),
             "\"430 deg\"",
