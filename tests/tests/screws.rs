@@ -11,6 +11,7 @@ use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::sample::samples;
+use overact_tests::support::tree::{SKELETON, drive};
 use overact_tests::support::whole::against_reference;
 use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served, model_with};
 use overact_tier::by_tier;
@@ -71,68 +72,31 @@ fn compiled_screws_move_as_evaluated_ones() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A tree of a turn and a screw, with a branch, and a drive between two of its bodies.
-fn driven(drive: &str, home: &str) -> String {
-    format!(
-        r#"name = "Screws"
-gravity = ["1 m/s^2", "-2 m/s^2", "-9 m/s^2"]
-[[leg.tree.joint]]
-name = "a"
-type = "revolute"
-alpha = "30 deg"
-d = "0.1 m"
-actuated = true
-[[leg.tree.joint]]
-name = "b"
-type = "helical"
-pitch = "0.2 m"
-gamma = "40 deg"
-alpha = "-70 deg"
-d = "0.2 m"
-theta = "q + 25 deg"
-r = "0.1 m"
-actuated = true
-[[leg.tree.joint]]
-name = "c"
-type = "revolute"
-alpha = "80 deg"
-d = "0.15 m"
-actuated = true
-[leg.drive]
-base = {{ at = ["0.05 m", "-0.3 m", "0.1 m"], rotation = ["15 deg", "40 deg", "-60 deg"] }}
-[[leg.drive.joint]]
-name = "one"
-type = "revolute"
-alpha = "90 deg"
-theta = "q + 90 deg"
-[[leg.drive.joint]]
-name = "two"
-type = "revolute"
-alpha = "90 deg"
-theta = "q + 90 deg"
-[[leg.drive.joint]]
-name = "three"
-alpha = "90 deg"
-{drive}
-[leg.drive.end]
-type = "point"
-body = "c"
-at = ["0.3 m", "0.2 m", "-0.15 m"]
-[[place]]
-name = "tree"
-shape = "tree"
-home = {{ b = "50 deg", c = "20 deg" }}
-[[place]]
-name = "drive"
-shape = "drive"
-home = {{ three = {home} }}
-"#
-    )
+/// The tree with a screw in the place of its slide, and a drive from the ground to the body behind.
+fn driven(keys: &str, home: &str) -> String {
+    let screw = [
+        (
+            "type = \"prismatic\"",
+            "type = \"helical\"\npitch = \"0.2 m\"",
+        ),
+        (
+            "theta = \"25 deg\"",
+            "theta = \"q + 25 deg\"\nr = \"0.1 m\"",
+        ),
+        ("b = \"0.3 m\", c", "b = \"50 deg\", c"),
+    ];
+    let tree = screw
+        .iter()
+        .fold(SKELETON.to_owned(), |text, (slide, screw)| {
+            assert_eq!(text.matches(slide).count(), 1, "{slide}");
+            text.replace(slide, screw)
+        });
+    tree + &drive("drive", ["ground", "c"], [keys, home])
 }
 
 #[test]
 fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
-    let text = driven("type = \"prismatic\"\nactuated = true", "\"0.6 m\"");
+    let text = driven("type = \"prismatic\"\nactuated = true", "0.6 m");
     let source = Source::new("screws.toml", text);
     let failures = against_reference(source, by_tier(STATES), [TOLERANCE; 2])?;
     assert!(failures.is_empty(), "{}", failures.join("\n"));
@@ -143,14 +107,14 @@ fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
 /// follows from the orientation of a rod, and no equation its slide: Newton's method finds both.
 #[test]
 fn chains_are_solved_for_screws() -> Result<(), Failure> {
-    for drive in ["actuated = true", "parameters = [\"fv\", \"m\"]"] {
+    for keys in ["actuated = true", "parameters = [\"fv\", \"m\"]"] {
         let text = driven(
-            &format!("type = \"helical\"\npitch = \"0.5 m\"\n{drive}"),
-            "\"430 deg\"",
+            &format!("type = \"helical\"\npitch = \"0.5 m\"\n{keys}"),
+            "430 deg",
         );
         let source = Source::new("screws.toml", text);
         let failures = against_reference(source, by_tier(STATES), [TOLERANCE; 2])?;
-        assert!(failures.is_empty(), "{drive}\n{}", failures.join("\n"));
+        assert!(failures.is_empty(), "{keys}\n{}", failures.join("\n"));
     }
     Ok(())
 }

@@ -42,6 +42,7 @@ mod inverse_kinematics;
 mod joint;
 mod kinematics;
 mod leg;
+mod legs;
 mod linear;
 mod masses;
 mod matrices;

@@ -3,23 +3,18 @@
 
 use super::body::{leg_base, leg_bodies};
 use super::carried::{CarriedBody, Mount};
-use super::centres::centres;
-use super::closure::{LegClosure, split_rows};
+use super::closure::LegClosure;
 use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::frames::LegFrames;
-use super::guard::{Guard, GuardKind};
-use super::inverse_kinematics::{Task, solve_leg};
+use super::guard::Guard;
 use super::leg::LegState;
 use super::linear::apply;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
-use super::orientation::{Orientation, Seat};
 use super::parasitic::Aside;
-use super::path::{Known, Path, orientation, seats};
 use super::platform::{PlatformMotion, PlatformPose};
-use super::rates::Rates;
 use super::selection::Formulation;
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Vector3};
@@ -116,101 +111,6 @@ impl<'a> Robot<'a> {
         Ok(robot)
     }
 
-    fn derive_leg(&mut self, index: usize, formulation: &Formulation) -> Result<(), Underivable> {
-        let (arena, mechanism) = (self.arena, self.mechanism);
-        let leg = &mechanism.legs[index];
-        arena.enter(&leg.name);
-        let station = formulation.stations.get(index).copied().unwrap_or_default();
-        let first_joint = self.mechanism.leg_range(index).start;
-        let name = || leg.name.clone();
-        let platform = self.end_of(index);
-        if let (Some(platform), MotionInput::Pose | MotionInput::Actuators) =
-            (&platform, self.configuration.from())
-        {
-            let task = Task::new(arena, self.mechanism, index, platform)
-                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
-            let conditions = solve_leg(task, &mut self.configuration)
-                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
-            let guards = conditions.into_iter().map(|reach| Guard {
-                value: reach.radicand,
-                kind: GuardKind::Reach,
-                leg: name(),
-            });
-            self.guards.extend(guards);
-        }
-        let seat = self.seat_of(index, formulation);
-        let platform = match &seat {
-            Some(seat) => self.end_seen(index, &seat.axes),
-            None => platform,
-        };
-        let configuration = &self.configuration;
-        let frames = LegFrames::new(
-            arena,
-            leg,
-            first_joint,
-            configuration,
-            station,
-            seat.as_ref(),
-        )
-        .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
-        let rates = Rates::new(leg, platform.is_some());
-        let gravity = Vector3::constant(arena, mechanism.gravity);
-        let level = |axes: &Orientation| {
-            let level = Orientation::default().relative(axes, arena, configuration)?;
-            Some(-(level * gravity))
-        };
-        let seat_on_ground = seat.as_ref().filter(|_| leg.base_body.is_none());
-        let ground = seat_on_ground.filter(|_| formulation.weighted);
-        let ground =
-            ground.and_then(|seat| Some([level(&seat.axes)?, level(&frames.orientation)?]));
-        let lift = match &seat {
-            _ if leg.base_body.is_some() || !formulation.masses_at_ends => None,
-            Some(seat) => level(&seat.axes),
-            None => Some(-gravity),
-        };
-        let centres = match formulation.meeting {
-            true => centres(leg, &rates),
-            false => Vec::new(),
-        };
-        let (closure, mut rows) = match &platform {
-            None => (None, self.identity_rows(mechanism.coordinate_range(index))),
-            Some(platform) => {
-                let home = |e: Expr<'a>| self.at_home(e);
-                let [selected, over] = match self.mechanism.is_parasitic() {
-                    true => split_rows(arena, leg, &frames, &rates, &home),
-                    false => [self.mechanism.closure_rows(index), Vec::new()],
-                };
-                let rows = [&selected[..], &over[..]];
-                let closure = LegClosure::new(arena, leg, &frames, &rates, platform, rows, &home)
-                    .ok_or_else(|| Underivable::SingularLeg { leg: name() })?;
-                let rows = closure.reduced_jacobian();
-                (Some(closure), rows)
-            }
-        };
-        if let Some(closure) = &closure {
-            self.guard_leg(closure, &leg.name);
-        }
-        if !self.mechanism.is_parasitic() {
-            name_rows(&rows, leg, &self.twist);
-        }
-        if let Some(carrier) = leg.base_body {
-            rows.extend(self.legs[carrier.leg].rows.clone());
-        }
-        self.legs.push(LegState {
-            first_joint,
-            frames,
-            rates,
-            centres,
-            platform,
-            closure,
-            ground,
-            lift,
-            rows,
-        });
-        arena.enter("");
-        Ok(())
-    }
-
     /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
     fn follow_independent(&mut self) {
         let partials = self.aside.as_ref().filter(|_| self.by_ends);
@@ -231,46 +131,6 @@ impl<'a> Robot<'a> {
         self.arena.enter("");
     }
 
-    /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
-    pub(super) fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
-        if let Some(platform) = &self.platform {
-            return Some(platform.clone());
-        }
-        let from = self.mechanism.legs[index].base_body;
-        let axes = orientation(self.mechanism, &self.configuration, from)?;
-        self.end_seen(index, &axes)
-    }
-
-    /// The axes in which a chain's closure is seen, where they are chosen.
-    fn seat_of(&self, index: usize, formulation: &Formulation) -> Option<Seat> {
-        let seat = formulation.seats.get(index).copied().unwrap_or_default();
-        if seat == 0 {
-            return None;
-        }
-        let all = seats(self.mechanism, &self.configuration, index)?;
-        Some(Seat {
-            from: all.first()?.clone(),
-            axes: all.get(seat)?.clone(),
-        })
-    }
-
-    /// What a chain ends on, as it is seen from the body that it starts from, in given axes.
-    fn end_seen(&self, index: usize, axes: &Orientation) -> Option<PlatformPose<'a>> {
-        let leg = &self.mechanism.legs[index];
-        leg.end.as_ref()?;
-        let legs = self.legs.iter();
-        let known = Known {
-            arena: self.arena,
-            mechanism: self.mechanism,
-            configuration: &self.configuration,
-            legs: legs
-                .map(|own| (own.first_joint, &own.rates, &own.rows))
-                .collect(),
-        };
-        let path = Path::new(&known, leg.base_body, leg.end_body?, axes)?;
-        Some(PlatformPose::on_body(self.arena, path))
-    }
-
     /// The frames of a leg in the base's axes.
     #[must_use]
     pub(crate) fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
@@ -279,23 +139,8 @@ impl<'a> Robot<'a> {
         LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0, None)
     }
 
-    fn guard_leg(&mut self, closure: &LegClosure<'a>, leg: &str) {
-        for determinant in &closure.determinants {
-            let (_, base) = determinant.factor_and_base();
-            let known = self.guards.iter().any(|g| g.value == base);
-            if !known && base.as_number().is_none() {
-                let kind = GuardKind::Leg(self.at_home(base).abs());
-                self.guards.push(Guard {
-                    value: base,
-                    kind,
-                    leg: leg.to_owned(),
-                });
-            }
-        }
-    }
-
     /// The rates of joints that are independent coordinates, per independent coordinate.
-    fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
+    pub(super) fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
         let dof = self.mechanism.dof();
         let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
         own.map(|i| (0..dof).map(|j| entry(i, j)).collect())
@@ -452,7 +297,7 @@ fn name_rates(leg: &crate::mechanism::Leg, values: &[Expr<'_>], prefix: &str) {
     }
 }
 
-fn name_rows(rows: &Rows<'_>, leg: &crate::mechanism::Leg, twist: &[TwistCoordinate]) {
+pub(super) fn name_rows(rows: &Rows<'_>, leg: &crate::mechanism::Leg, twist: &[TwistCoordinate]) {
     for (joint, row) in leg.independent().zip(rows) {
         for (entry, coordinate) in row.iter().zip(twist) {
             let what = format!(

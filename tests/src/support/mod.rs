@@ -13,6 +13,7 @@ pub mod random;
 pub mod rank;
 pub mod sample;
 pub mod served;
+pub mod tree;
 pub mod whole;
 
 pub use agreement::Agreement;
