@@ -2,6 +2,7 @@
 
 mod fingerprint;
 mod multiples;
+mod over_divisors;
 mod placeholders;
 mod symbols;
 
@@ -120,6 +121,8 @@ struct Tables {
     scope: u32,
     /// Whether multiples of nodes by irrational constants are looked for.
     finds_irrational: bool,
+    /// Whether sums that are known over a divisor are looked for.
+    finds_over_divisors: bool,
 }
 
 /// An expression graph.

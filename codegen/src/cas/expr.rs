@@ -183,7 +183,8 @@ impl<'a> Expr<'a> {
         } else {
             Op::Add(self.handle, other.handle)
         };
-        self.with(self.arena.intern(op))
+        let known = self.arena.over_divisors(&op);
+        known.unwrap_or_else(|| self.with(self.arena.intern(op)))
     }
 
     fn scale(self, factor: Number) -> Self {

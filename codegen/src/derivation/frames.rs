@@ -92,6 +92,23 @@ impl<'a> LegFrames<'a> {
         })
     }
 
+    /// Writes the orientations of a leg's frames in the axes in which its closure is seen, so that what turns out to
+    /// be a direction of a link over a divisor is known as one. `None` where one does not follow from the
+    /// configuration.
+    pub(super) fn write_in_seat(
+        arena: &'a Arena,
+        leg: &Leg,
+        first_joint: usize,
+        configuration: &Configuration<'a>,
+        seat: &Seat,
+    ) -> Option<()> {
+        for of in Orientation::of_leg(leg, first_joint, configuration)? {
+            let whole = seat.from.followed_by(&of)?;
+            let _ = whole.relative(&seat.axes, arena, configuration)?;
+        }
+        Some(())
+    }
+
     /// The vector from the origin of joint `index` to that of the last joint, along the links.
     #[must_use]
     pub(crate) fn to_end(&self, arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {

@@ -31,7 +31,6 @@ impl<'a> Robot<'a> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         arena.enter(&leg.name);
-        let station = formulation.stations.get(index).copied().unwrap_or_default();
         let first_joint = mechanism.leg_range(index).start;
         let platform = self.end_of(index);
         if let Some(platform) = &platform {
@@ -42,11 +41,8 @@ impl<'a> Robot<'a> {
             Some(seat) => self.end_seen(index, &seat.axes),
             None => platform,
         };
-        let (configuration, seen) = (&self.configuration, seat.as_ref());
-        let frames = LegFrames::new(arena, leg, first_joint, configuration, station, seen);
-        let frames = frames.ok_or_else(|| Underivable::InverseKinematics {
-            leg: leg.name.clone(),
-        })?;
+        let seen = seat.as_ref();
+        let frames = self.frames_of(index, seen, formulation)?;
         let rates = Rates::new(leg, platform.is_some());
         let (ground, lift) = self.levels(leg, &frames, seen, formulation);
         let centres = match formulation.meeting {
@@ -106,6 +102,27 @@ impl<'a> Robot<'a> {
         });
         self.guards.extend(guards);
         Ok(())
+    }
+
+    /// The frames of a leg in the axes of its closure; first those in which the closure is seen, where sums over
+    /// divisors are looked for.
+    fn frames_of(
+        &self,
+        index: usize,
+        seen: Option<&Seat>,
+        formulation: &Formulation,
+    ) -> Result<LegFrames<'a>, Underivable> {
+        let (arena, configuration) = (self.arena, &self.configuration);
+        let leg = &self.mechanism.legs[index];
+        let first_joint = self.mechanism.leg_range(index).start;
+        if let Some(seat) = seen.filter(|_| formulation.over_divisors) {
+            let _ = LegFrames::write_in_seat(arena, leg, first_joint, configuration, seat);
+        }
+        let station = formulation.stations.get(index).copied().unwrap_or_default();
+        let frames = LegFrames::new(arena, leg, first_joint, configuration, station, seen);
+        frames.ok_or_else(|| Underivable::InverseKinematics {
+            leg: leg.name.clone(),
+        })
     }
 
     /// The acceleration of the ground less gravity, of a leg that stands on it: in the axes in which the closure sees

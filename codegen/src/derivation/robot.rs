@@ -82,6 +82,9 @@ impl<'a> Robot<'a> {
             arena.find_irrational_multiples();
             arena.unit_quaternion("pose", mechanism.pose_len() - 4, still);
         }
+        if formulation.over_divisors {
+            arena.find_over_divisors();
+        }
         let mut robot = Self {
             arena,
             mechanism,

@@ -62,6 +62,9 @@ pub struct Formulation {
     /// Whether the masses of last bodies whose frames stand at the ends of legs are masses at points of what the legs
     /// end on, in the identification model.
     pub masses_at_ends: bool,
+    /// Whether sums that are known over a divisor are looked for, beside the directions of links in the axes in which
+    /// closures are seen.
+    pub over_divisors: bool,
 }
 
 /// A column as a linear combination of other columns.

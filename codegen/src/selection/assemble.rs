@@ -71,14 +71,46 @@ impl Assembler<'_> {
             searched.extend(self.in_other_axes(function, from, (&refined, least))?);
             searched.push(refined);
         }
+        let searched = distinct(searched);
         let mut best: Option<Program> = None;
-        for Form { selection, .. } in &searched {
+        let closing = self.closing(function, from, &searched)?;
+        let selections = searched.iter().map(|form| &form.selection).chain(&closing);
+        for selection in selections {
             let form = Assembler { selection, ..*self }.program(function, from)?;
             if best.as_ref().is_none_or(|best| is_cheaper(&form, best)) {
                 best = Some(form);
             }
         }
         best.map_or_else(|| self.program(function, from), Ok)
+    }
+
+    /// What the closing change makes the cheapest of some forms, where a short search says that it pays for that one.
+    fn closing(
+        &self,
+        function: Function,
+        from: MotionInput,
+        forms: &[Form],
+    ) -> Result<Option<Selection>, Underivable> {
+        let change = formulation::closing_choice(self.mechanism, function);
+        let Some(change) = change.filter(|_| self.search.is_thorough()) else {
+            return Ok(None);
+        };
+        let mut found: Option<(usize, Selection)> = None;
+        for Form { selection, .. } in forms {
+            let Some(formulation) = change.of(&selection.formulation) else {
+                continue;
+            };
+            let other = Selection {
+                formulation,
+                ..selection.clone()
+            };
+            let after = |selection| self.after_short_search(selection, function, from);
+            let least = after(&other)?;
+            if least < after(selection)? && found.as_ref().is_none_or(|(known, _)| least < *known) {
+                found = Some((least, other));
+            }
+        }
+        Ok(found.map(|(_, selection)| selection))
     }
 
     /// The forms of a function with their operations before a search: those of the robot's formulation, and of
@@ -345,12 +377,33 @@ impl Assembler<'_> {
     }
 }
 
+/// Forms of which each is searched once, though several ways may have led to it.
+fn distinct(forms: Vec<Form>) -> Vec<Form> {
+    let mut own: Vec<Form> = Vec::new();
+    for form in forms {
+        if !own.iter().any(|known| known.is_written_as(&form)) {
+            own.push(form);
+        }
+    }
+    own
+}
+
+impl Form {
+    /// Whether a function is written alike in both, with columns of the same robot.
+    fn is_written_as(&self, other: &Self) -> bool {
+        let (own, other) = (&self.selection, &other.selection);
+        own.formulation == other.formulation
+            && own.dynamics == other.dynamics
+            && own.combined.is_empty() == other.combined.is_empty()
+    }
+}
+
 /// Operations after a short search of a plain form that is worth a longer one, in hundredths of the fewest.
 const NEAR: usize = 106;
 
 /// Operations after a short search of what changes have made of a form, in hundredths of the form's own, that leave no
 /// hope for the form.
-const CLEARLY: usize = 98;
+const CLEARLY: usize = 97;
 
 /// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
 /// replacements take about as much from each form of the dynamics; with and without combined columns they,

@@ -37,6 +37,7 @@ pub(super) fn cheapest_formulation(
         by_ends: false,
         by_rows: false,
         masses_at_ends: false,
+        over_divisors: false,
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -120,6 +121,8 @@ pub(super) enum Change {
     ByRows(bool),
     /// Whether masses at the ends of legs are masses at points of what the legs end on.
     MassesAtEnds(bool),
+    /// Whether sums that are known over a divisor are looked for.
+    OverDivisors(bool),
 }
 
 impl Change {
@@ -159,6 +162,7 @@ impl Change {
             Self::ByEnds(by_ends) => changed.by_ends = *by_ends,
             Self::ByRows(by_rows) => changed.by_rows = *by_rows,
             Self::MassesAtEnds(at_ends) => changed.masses_at_ends = *at_ends,
+            Self::OverDivisors(over) => changed.over_divisors = *over,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -233,27 +237,36 @@ pub(super) fn has_several_shapes(mechanism: &Mechanism) -> bool {
 
 /// The changes that are tried last, on what the others have made: whether they pay is seen after a search alone.
 pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Change> {
-    let has_columns = function.columns().is_some();
-    let has_motion = has_forces(function)
-        || has_columns
+    let mut all = Vec::new();
+    if mechanism.is_parasitic() {
+        all.push(Change::ByEnds(true));
+    }
+    if has_motion(function) && !mechanism.is_tree() {
+        all.push(Change::ByRows(true));
+        let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
+        if function.columns().is_some() && mechanism.legs.iter().any(ends_in_point) {
+            all.push(Change::MassesAtEnds(true));
+        }
+    }
+    all
+}
+
+/// The change that is tried on what all others have made: sums over divisors, which closures of legs divide by.
+pub(super) fn closing_choice(mechanism: &Mechanism, function: Function) -> Option<Change> {
+    let divides = !mechanism.is_tree() && has_motion(function);
+    divides.then_some(Change::OverDivisors(true))
+}
+
+/// Whether a function is of velocities or accelerations.
+const fn has_motion(function: Function) -> bool {
+    has_forces(function)
+        || function.columns().is_some()
         || matches!(
             function,
             Function::JointVelocities
                 | Function::JointAccelerations
                 | Function::AccelerationFromActuators
-        );
-    let mut all = Vec::new();
-    if mechanism.is_parasitic() {
-        all.push(Change::ByEnds(true));
-    }
-    if has_motion && !mechanism.is_tree() {
-        all.push(Change::ByRows(true));
-        let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
-        if has_columns && mechanism.legs.iter().any(ends_in_point) {
-            all.push(Change::MassesAtEnds(true));
-        }
-    }
-    all
+        )
 }
 
 /// The formulations of a function that one change makes of that of a robot, and those that all changes so far make
@@ -267,8 +280,9 @@ pub fn formulations(
     let mut together = of.clone();
     let mut all = Vec::new();
     let last = last_choices(mechanism, function);
+    let closing = closing_choice(mechanism, function);
     let changes = choices_of_function(mechanism, function).into_iter();
-    for change in changes.chain(last) {
+    for change in changes.chain(last).chain(closing) {
         all.extend(change.of(of));
         together = change.of(&together).unwrap_or(together);
         if !all.contains(&together) {

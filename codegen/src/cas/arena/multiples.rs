@@ -33,6 +33,11 @@ impl Arena {
         multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
     }
 
+    /// The known node of which this is a multiple, scaled.
+    pub(super) fn multiple(&self, fingerprint: &Fingerprint) -> Option<Handle> {
+        self.proportional(ratio_key(fingerprint)?, fingerprint)
+    }
+
     /// The multiple of a node by a fraction or by a known constant that this one is.
     fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
         let (other, factor) = {

@@ -1,0 +1,97 @@
+//! Sums that are known over what their parts are divided by.
+
+use super::super::expr::Expr;
+use super::super::field::Element;
+use super::{Arena, Handle, Op};
+
+/// How deep under a sum divisors are looked for: in a product of a quotient that is a part of a part.
+const DEPTH: usize = 4;
+
+impl Arena {
+    /// From now on, a sum of quotients that is a known expression over their divisors is written so.
+    pub(crate) fn find_over_divisors(&self) {
+        self.tables.borrow_mut().finds_over_divisors = true;
+    }
+
+    /// t / d for a sum and what parts of it are divided by, d, one divisor or the product of all, where t, the sum
+    /// times d, is known or a multiple of what is known: (t₂ c - t₁ s) c/s + (t₁ c + t₂ s), for instance, is t₂ / s.
+    pub(in super::super) fn over_divisors(&self, sum: &Op) -> Option<Expr<'_>> {
+        let tables = self.tables.borrow();
+        if !tables.finds_over_divisors || tables.by_shape.contains_key(sum) {
+            return None;
+        }
+        let own = tables.fingerprint(sum);
+        drop(tables);
+        let divisors = self.divisors_under(sum);
+        if divisors.is_empty() || own.image.contains(&Element::ZERO) {
+            return None;
+        }
+        let singles = divisors.iter().map(std::slice::from_ref);
+        let all = (divisors.len() > 1).then_some(&divisors[..]);
+        singles.chain(all).find_map(|by| {
+            let factors = by.iter().map(|by| self.fingerprint_at(by.index()));
+            let times = factors.fold(own, |times, factor| times * factor);
+            let known = self.same(&times).or_else(|| self.multiple(&times))?;
+            let quotient = |t, by: &Handle| t / self.expr(*by);
+            self.fits(sum, known)
+                .then(|| by.iter().fold(self.expr(known), quotient))
+        })
+    }
+
+    /// What parts of a sum are divided by, each divisor once.
+    fn divisors_under(&self, sum: &Op) -> Vec<Handle> {
+        let mut divisors = Vec::new();
+        let mut parts: Vec<(Handle, usize)> = sum.operands().map(|part| (part, 1)).collect();
+        while let Some((part, depth)) = parts.pop() {
+            let op = self.op(part.index());
+            let inner = match op {
+                Op::Div(a, by) => {
+                    if !divisors.contains(&by) {
+                        divisors.push(by);
+                    }
+                    [Some(a), None]
+                }
+                Op::Mul(a, b) | Op::Add(a, b) | Op::Sub(a, b) => [Some(a), Some(b)],
+                _ => [None, None],
+            };
+            if depth < DEPTH {
+                parts.extend(inner.into_iter().flatten().map(|own| (own, depth + 1)));
+            }
+        }
+        divisors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With t₁' = t₁ c + t₂ s and t₂' = t₂ c - t₁ s, k (t₂' c/s + t₁') is k t₂ / s where t₂ is known.
+    #[test]
+    fn a_turned_direction_over_the_sine_is_found() {
+        let solved = |finds: bool| {
+            let arena = Arena::new();
+            if finds {
+                arena.find_over_divisors();
+            }
+            let (c, s) = arena.cosine_and_sine(&arena.input_angle("joints", 0));
+            let [t1, t2, d] = [0, 1, 2].map(|i| arena.input("pose", i));
+            let [own1, own2] = [t1 * c + t2 * s, t2 * c - t1 * s];
+            let k = arena.integer(5) / d;
+            let sum = own2 * (c / s * k) + own1 * k;
+            sum == (arena.integer(5) * t2) / s / d || sum == (arena.integer(5) * t2) / d / s
+        };
+        assert!(solved(true));
+        assert!(!solved(false));
+    }
+
+    /// A sum that is nothing over its divisors stays as it is written.
+    #[test]
+    fn a_sum_of_other_quotients_stays() {
+        let arena = Arena::new();
+        arena.find_over_divisors();
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| arena.input("pose", i));
+        let sum = a / c + b / d;
+        assert!(matches!(arena.op(sum.handle().index()), Op::Add(_, _)));
+    }
+}
