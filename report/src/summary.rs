@@ -271,6 +271,9 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
         let s = if count == 1 { "" } else { "s" };
         line(&mut text, &format!("  {count} check{s} found nothing."));
     }
+    if let Some(words) = &verdict.rests_on {
+        paragraph(&mut text, "  ", words);
+    }
     text
 }
 

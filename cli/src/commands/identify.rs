@@ -18,6 +18,9 @@ use overact_report::Extent;
 use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
 
+/// What is said where `--tracking` asks for what there is not.
+const NOTHING_TO_FOLLOW: &str = "--tracking follows nothing: it takes the runs that are held out from the virtual robot's in [experiment], also beside logs, and the description has none (`validation = true` of a run)";
+
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
@@ -142,6 +145,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.tracking || beside.is_some() {
         let bar = Progress::new("simulating", as_json);
         result.tracking = tracking(&robot, &result, &|part, run| bar.at(part, run))?;
+    }
+    if arguments.tracking && result.tracking.is_empty() {
+        result.warnings.push(String::from(NOTHING_TO_FOLLOW));
     }
     let text = if as_json {
         output::json(&result)?

@@ -226,6 +226,7 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
 /// The error's own text may name the temporary file, which is nobody's business.
 fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
     let reason = match error.kind() {
+        io::ErrorKind::NotFound if folder(path).is_dir() => "its folder takes no files".to_owned(),
         io::ErrorKind::NotFound => "its folder does not exist".to_owned(),
         io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),

@@ -56,8 +56,7 @@ pub(crate) fn assumptions(
             "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
         ),
     ];
-    let sizes = model.info().sizes;
-    if sizes.actuators == sizes.dof && couples(model) {
+    if lengths_are_untold(model) {
         all.push(String::from(
             "each length of the loops is right: with as many drives as degrees of freedom no closure tells of them, and they are not looked for",
         ));
@@ -79,6 +78,27 @@ pub(crate) fn assumptions(
         ));
     }
     all
+}
+
+/// Whether nothing tells the lengths of the loops: no more drives than degrees of freedom.
+fn lengths_are_untold(model: &dyn Model) -> bool {
+    let sizes = model.info().sizes;
+    sizes.actuators == sizes.dof && couples(model)
+}
+
+/// The assumptions that are most often wrong, in a sentence for the verdict itself.
+pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
+    let what = match (lengths_are_untold(model), before.gains) {
+        (true, false) => {
+            "the lengths and the unit and constants of the torques are right as stated: nothing in data of this robot tells"
+        }
+        (false, false) => {
+            "the unit and constants of the torques are right as stated: nothing in the data tells"
+        }
+        (true, true) => "the lengths are right as stated: nothing in data of this robot tells",
+        (false, true) => return None,
+    };
+    Some(format!("This takes for granted that {what}."))
 }
 
 /// A kind of faults: the check that looks for it, whether its size is a part of one, and what it is called.

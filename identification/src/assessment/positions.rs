@@ -12,6 +12,9 @@ use crate::{data::Log, error::Error, kinematics::approach};
 const ROWS: usize = 200;
 const INTERVAL: f64 = 0.01;
 
+/// Distance of the rows of a whole run, s: several of them in a period of what a filter takes away.
+const OFTEN: f64 = 0.002;
+
 /// A change that explains the positions leaves this part of the miss, at most.
 const EXPLAINED: f64 = 0.1;
 
@@ -166,27 +169,78 @@ fn rows(log: &Log) -> Result<Vec<f64>, Error> {
 /// The largest distance of positions from those that their poses ask for, or `None` where one has no
 /// pose.
 fn miss(model: &dyn Model, rows: &[f64]) -> Option<f64> {
-    let info = model.info();
-    let n = info.sizes.actuators;
-    let mut pose = info.home_pose.to_vec();
-    approach(model, rows.get(..n)?, &mut pose);
-    let mut reached = vec![0.0; n];
-    let mut largest = 0.0_f64;
-    for row in rows.chunks_exact(n) {
-        model.pose_from_actuators(row, &mut pose).ok()?;
-        model
-            .evaluate(Function::ActuatorPositions, &[&pose], &mut reached)
-            .ok()?;
-        for ((q, reached), revolute) in row.iter().zip(&reached).zip(info.actuator_is_revolute) {
-            let difference = if *revolute {
-                wrap_angle(q - reached)
-            } else {
-                q - reached
-            };
-            largest = largest.max(difference.abs());
+    let mut closing = Closing::new(model);
+    closing.take(rows).then_some(closing.largest)
+}
+
+/// The largest distance of a run's positions, as they were logged, from those that their poses ask for, or `None`
+/// where one has no pose.
+///
+/// # Errors
+/// A file that can't be read any more.
+pub(crate) fn unfiltered_miss(model: &dyn Model, log: &Log) -> Result<Option<f64>, Error> {
+    let n = log.actuators();
+    let stride = ((OFTEN * log.sampling_frequency()) as usize).max(1);
+    let mut closing = Closing::new(model);
+    let mut reader = log.reader()?;
+    let mut sample = 0_usize;
+    while let Some(block) = reader.next()? {
+        for row in block.positions.chunks_exact(n) {
+            if sample.is_multiple_of(stride) && !closing.take(row) {
+                return Ok(None);
+            }
+            sample += 1;
         }
     }
-    Some(largest)
+    Ok(Some(closing.largest))
+}
+
+/// How well positions close the loops, row by row.
+struct Closing<'a> {
+    model: &'a dyn Model,
+    /// The pose of the row before; none before the first one.
+    pose: Option<Vec<f64>>,
+    reached: Vec<f64>,
+    largest: f64,
+}
+
+impl<'a> Closing<'a> {
+    fn new(model: &'a dyn Model) -> Self {
+        Self {
+            model,
+            pose: None,
+            reached: vec![0.0; model.info().sizes.actuators],
+            largest: 0.0,
+        }
+    }
+
+    /// Takes rows that follow; false where one has no pose.
+    fn take(&mut self, rows: &[f64]) -> bool {
+        let n = self.reached.len();
+        rows.chunks_exact(n).all(|row| self.one(row).is_some())
+    }
+
+    /// Takes a row.
+    fn one(&mut self, row: &[f64]) -> Option<()> {
+        let (model, info) = (self.model, self.model.info());
+        let pose = self.pose.get_or_insert_with(|| {
+            let mut pose = info.home_pose.to_vec();
+            approach(model, row, &mut pose);
+            pose
+        });
+        model.pose_from_actuators(row, pose).ok()?;
+        let function = Function::ActuatorPositions;
+        model.evaluate(function, &[pose], &mut self.reached).ok()?;
+        let both = row.iter().zip(&self.reached);
+        for ((q, reached), revolute) in both.zip(info.actuator_is_revolute) {
+            let difference = match *revolute {
+                true => wrap_angle(q - reached),
+                false => q - reached,
+            };
+            self.largest = self.largest.max(difference.abs());
+        }
+        Some(())
+    }
 }
 
 #[cfg(test)]

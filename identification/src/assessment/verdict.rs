@@ -25,6 +25,10 @@ pub struct Verdict {
     pub listed: Vec<String>,
     /// Why, in sentences: what speaks against it, most serious first; else what was checked.
     pub reasons: Vec<String>,
+    /// What of the description and the logs a result that may be used takes for right though nothing in the data of
+    /// this robot tells it, in a sentence; none where there is nothing of the kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rests_on: Option<String>,
     /// The verdicts on all stages.
     pub stages: Vec<StageVerdict>,
 }
@@ -42,8 +46,12 @@ pub struct StageVerdict {
     pub reasons: Vec<String>,
 }
 
-/// The verdicts on all models, in the order of their estimates.
-pub(crate) fn verdicts(estimates: &[Estimate], checks: &[Check]) -> Vec<Verdict> {
+/// The verdicts on all models, in the order of their estimates; `rests_on` is what results of this robot take for right.
+pub(crate) fn verdicts(
+    estimates: &[Estimate],
+    checks: &[Check],
+    rests_on: Option<&str>,
+) -> Vec<Verdict> {
     let mut models: Vec<ModelKind> = estimates.iter().map(|one| one.model).collect();
     models.dedup();
     let of_model = |model: ModelKind| {
@@ -63,6 +71,9 @@ pub(crate) fn verdicts(estimates: &[Estimate], checks: &[Check]) -> Vec<Verdict>
             trusted: main.grade == Grade::Use,
             listed: main.listed,
             reasons: main.reasons,
+            rests_on: rests_on
+                .filter(|_| main.grade != Grade::DoNotUse)
+                .map(str::to_owned),
             stages,
         })
     };

@@ -4,6 +4,7 @@
 use super::{
     resampling::{Place, Resampled, apart},
     samples::Samples,
+    signals::is_measurable,
     source::Files,
     table,
 };
@@ -327,26 +328,32 @@ impl<'a> Rows<'a> {
     fn take(&self, samples: &mut Samples) -> Result<(), Error> {
         let n = self.files.actuators;
         let values = self.files.signals.values(&self.values);
-        let mut finite = true;
-        let mut values = values.inspect(|value| finite &= value.is_finite());
+        let mut sound = true;
+        let mut values = values.inspect(|value| sound &= is_measurable(*value));
         samples.positions.extend(values.by_ref().take(n));
         samples.torques.extend(values.by_ref().take(n));
         samples.velocities.extend(values);
         if let Some(transmission) = &self.files.transmission {
             transmission.to_joints(samples);
         }
-        if finite {
+        if sound {
             return Ok(());
         }
-        let text = self.files.signals.not_finite(&self.values);
-        let text = text.unwrap_or_default();
-        let message = format!(
-            "sample {}: `{text}` is not a finite number",
-            self.samples - 1
+        let bad = self.files.signals.immeasurable(&self.values);
+        let (text, value) = bad.unwrap_or(("", f64::NAN));
+        let sample = self.samples - 1;
+        let problem = Problem::new(
+            Code::NOT_A_NUMBER,
+            match value.is_finite() {
+                true => format!("sample {sample}: `{text}` is {value:e}, which nothing measures"),
+                false => format!("sample {sample}: `{text}` is not a finite number"),
+            },
         );
-        let problem = Problem::new(Code::NOT_A_NUMBER, message)
-            .file(self.files.name())
-            .column(text);
+        let problem = match value.is_finite() {
+            true => problem.help("cut the run there, or look at how the log was written"),
+            false => problem,
+        };
+        let problem = problem.file(self.files.name()).column(text);
         Err(match self.line() {
             Some(line) => problem.line(line),
             None => problem,

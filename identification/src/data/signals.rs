@@ -130,12 +130,20 @@ impl Signals {
         self.signals.iter().map(|signal| signal.value(columns))
     }
 
-    /// The first signal that has no finite value, as the mapping writes it.
-    pub(super) fn not_finite(&self, columns: &[f64]) -> Option<&str> {
-        let mut signals = self.signals.iter();
-        let bad = signals.find(|signal| !signal.value(columns).is_finite());
-        bad.map(|signal| signal.text.as_str())
+    /// The first signal that has a value that nothing measures, as the mapping writes it, with the value.
+    pub(super) fn immeasurable(&self, columns: &[f64]) -> Option<(&str, f64)> {
+        let all = self.signals.iter();
+        let mut all = all.map(|signal| (signal.text.as_str(), signal.value(columns)));
+        all.find(|(_, value)| !is_measurable(*value))
     }
+}
+
+/// The largest value of a position, velocity or torque in SI units that is taken for measured.
+const LARGEST: f64 = 1e15;
+
+/// Whether a value can have been measured: a finite number that is not beyond anything.
+pub(super) fn is_measurable(value: f64) -> bool {
+    value.abs() <= LARGEST
 }
 
 /// Columns with their names, borrowed.

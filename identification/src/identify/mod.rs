@@ -34,7 +34,7 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, Watched,
-        assumptions::{Found, assumptions, unseen},
+        assumptions::{Found, assumptions, rests_on, unseen},
         check::{Check, Grade},
         suspects::{Reach, scores},
         verdict::verdicts,
@@ -128,7 +128,7 @@ pub fn identify_after(
     });
     let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
-    let scores = base.map(|(_, base)| {
+    let scores_of = |(_, base): &(usize, Estimate), times: usize| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
         let reaches = reaches(&watched[..dataset.runs.len()]);
         let runs = (dataset.runs, dataset.variants);
@@ -137,10 +137,11 @@ pub fn identify_after(
             runs,
             columns,
             (base, &reaches),
-            (settings, &prepared.returns),
+            (settings, &prepared.returns, times),
         )
-    });
-    let scores = scores.transpose()?;
+    };
+    let scores = base.map(|base| scores_of(base, 1)).transpose()?;
+    let narrow = || base.map(|base| scores_of(base, 2)).transpose();
     let checks = assessment::checks(&Context {
         model,
         dataset,
@@ -151,6 +152,7 @@ pub fn identify_after(
         watched: &watched,
         estimates: &estimates,
         scores: scores.as_ref(),
+        narrow: &narrow,
         cross_validation: &cross_validation,
         errors_in_regressor: &errors_in_regressor,
     })?;
@@ -166,7 +168,8 @@ pub fn identify_after(
     )?;
     let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
-    let verdicts = verdicts(&estimates, &checks);
+    let rests_on = rests_on(model, found);
+    let verdicts = verdicts(&estimates, &checks, rests_on.as_deref());
     // What is refused anyway needs no word on what it might hide.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
     let unseen = match refused {

@@ -60,11 +60,12 @@ fn cards(identification: &Identification) -> String {
         };
         let _ = writeln!(
             html,
-            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {}: {}</h3>{}{}{}</div>",
+            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {}: {}</h3>{}{}{}{}</div>",
             escape(&capital(&verdict.subject)),
             grade_words(verdict.grade),
             listed(&verdict.listed),
             reasons(identification, verdict),
+            rests_on(verdict),
             others(verdict)
         );
     }
@@ -82,6 +83,12 @@ fn listed(names: &[String]) -> String {
         "<p>To be used, if the fault is the one that is named: {}.</p>",
         prose(&names.join(", "))
     )
+}
+
+/// What a result that may be used takes for right.
+fn rests_on(verdict: &Verdict) -> String {
+    let words = verdict.rests_on.as_deref().map(prose);
+    words.map_or_else(String::new, |words| paragraph(&words))
 }
 
 /// What speaks against a model, each with a link to what shows it; else that nothing does.

@@ -38,34 +38,24 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(checks);
     }
     for (number, (log, watched)) in context.runs().enumerate() {
-        let residual = watched.closure_residual;
         let (limit, noise) = limit(watched, log.samples());
         let ranges = watched.monitor.ranges();
         let range = ranges.into_iter().fold(0.0, f64::max);
-        let harmless = HARMLESS * range * finest(context);
-        let explained = positions::explanation(context.model, log, limit.max(harmless))?;
-        let misses = residual > limit;
-        let part = significant(100.0 * residual / range, 2);
-        let words = if !misses {
-            format!(
-                "the positions close the loops to {} m or rad, as encoders of this resolution and noise do",
-                significant(residual, 2)
-            )
-        } else if residual <= harmless {
-            format!(
-                "the positions miss the closure of the loops by up to {} m or rad, more than resolution and noise explain, but only {part} % of the range of the motion",
-                significant(residual, 2)
-            )
-        } else {
-            format!(
-                "the positions miss the closure of the loops by up to {} m or rad, {part} % of the range of the motion, where resolution and noise explain {}; lengths of the description or offsets of encoders are wrong: `overact identify --calibrate` estimates them",
-                significant(residual, 2),
-                significant(limit, 2)
-            )
+        let closing = Closing {
+            filtered: watched.closure_residual,
+            as_logged: match watched.closure_residual > limit {
+                true => positions::unfiltered_miss(context.model, log)?,
+                false => None,
+            },
+            limit,
+            harmless: HARMLESS * range * finest(context),
+            range,
         };
-        let check = Check::new(CheckKind::Closure, About::Model, words)
+        let tolerance = limit.max(closing.harmless);
+        let explained = positions::explanation(context.model, log, tolerance)?;
+        let check = Check::new(CheckKind::Closure, About::Model, closing.words())
             .in_run(log.name())
-            .measured(residual, "m or rad")
+            .measured(closing.filtered, "m or rad")
             .against(
                 limit,
                 format!(
@@ -79,16 +69,64 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         } else {
             check
         };
-        checks.extend(explained.filter(|_| misses));
-        checks.push(if misses && residual > harmless {
-            check.allowing(Grade::DoNotUse)
-        } else if misses {
-            check.found()
-        } else {
+        checks.extend(explained.filter(|_| closing.misses()));
+        checks.push(if !closing.misses() {
             check
+        } else if closing.filtered > closing.harmless {
+            check.allowing(Grade::DoNotUse)
+        } else {
+            check.found()
         });
     }
     Ok(checks)
+}
+
+/// How well the positions of a run close the loops (m, rad).
+struct Closing {
+    /// The largest miss of positions that are filtered as for the model.
+    filtered: f64,
+    /// That of the positions as they were logged, where they have poses and it was looked for. A filter takes of each
+    /// encoder what is fast, and what is left does not close loops that are not linear: positions that shake near the
+    /// cutoff miss the closure once they are filtered, whatever the lengths are.
+    as_logged: Option<f64>,
+    /// What resolution and noise explain.
+    limit: f64,
+    /// What does no harm.
+    harmless: f64,
+    /// The range of the motion.
+    range: f64,
+}
+
+impl Closing {
+    /// Whether the positions contradict the loops.
+    fn misses(&self) -> bool {
+        self.filtered > self.limit && self.as_logged.is_none_or(|miss| miss > self.limit)
+    }
+
+    fn words(&self) -> String {
+        let part = significant(100.0 * self.filtered / self.range, 2);
+        let number = |value: f64| significant(value, 2);
+        match self.as_logged {
+            _ if self.filtered <= self.limit => format!(
+                "the positions close the loops to {} m or rad, as encoders of this resolution and noise do",
+                number(self.filtered)
+            ),
+            Some(miss) if !self.misses() => format!(
+                "the positions close the loops to {} m or rad, as encoders of this resolution and noise do; once they are filtered they miss by up to {}, since they shake near the cutoff",
+                number(miss),
+                number(self.filtered)
+            ),
+            _ if self.filtered <= self.harmless => format!(
+                "the positions miss the closure of the loops by up to {} m or rad, more than resolution and noise explain, but only {part} % of the range of the motion",
+                number(self.filtered)
+            ),
+            _ => format!(
+                "the positions miss the closure of the loops by up to {} m or rad, {part} % of the range of the motion, where resolution and noise explain {}; lengths of the description or offsets of encoders are wrong: `overact identify --calibrate` estimates them",
+                number(self.filtered),
+                number(self.limit)
+            ),
+        }
+    }
 }
 
 /// The largest miss that resolution and noise explain, and the noise (m, rad).
@@ -134,5 +172,42 @@ fn evidence(context: &Context<'_>) -> Evidence {
         y: Axis::new("miss", "m or rad"),
         points: curves.into_iter().collect(),
         ..Evidence::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Closing;
+
+    const RINGING: Closing = Closing {
+        filtered: 1.4e-4,
+        as_logged: Some(1e-5),
+        limit: 5e-5,
+        harmless: 2e-5,
+        range: 0.6,
+    };
+
+    #[test]
+    fn positions_that_close_as_they_were_logged_accuse_no_length() {
+        assert!(!RINGING.misses());
+        assert!(RINGING.words().contains("near the cutoff"));
+    }
+
+    #[test]
+    fn positions_that_miss_filtered_or_not_accuse_the_lengths() {
+        for as_logged in [Some(1.5e-4), None] {
+            let wrong = Closing {
+                as_logged,
+                ..RINGING
+            };
+            assert!(wrong.misses());
+            assert!(wrong.words().contains("--calibrate"));
+        }
+        let close = Closing {
+            filtered: 4e-5,
+            as_logged: None,
+            ..RINGING
+        };
+        assert!(!close.misses());
     }
 }

@@ -7,6 +7,7 @@ mod course;
 mod delay;
 mod gains;
 mod geometry;
+mod half_band;
 mod held_out;
 pub(crate) mod level;
 mod missing_parameters;
@@ -55,6 +56,8 @@ pub(crate) struct Context<'a> {
     pub(crate) estimates: &'a [(usize, Estimate)],
     /// What the residual of the first base estimate says of faults that the model lacks.
     pub(crate) scores: Option<&'a Scores>,
+    /// The same from half of the band, for what has to be told from errors of the positions.
+    pub(crate) narrow: &'a dyn Fn() -> Result<Option<Scores>, Error>,
     /// Every estimate on every run that was held out.
     pub(crate) cross_validation: &'a [CrossValidation],
     /// For each model, the estimates by instruments beside those by least squares.

@@ -16,21 +16,23 @@ const LARGEST_PERCENT: f64 = 20.0;
 /// lies at this part of the new Nyquist frequency.
 const PASSED: f64 = 0.8;
 
-/// How many times its noise the residual may be before it has to be said that nothing explains it. Virtual
-/// robots without a fault leave 0.99 to 1.3 times the noise, with coarse encoders more.
+/// How many times its noise the residual may be where nothing explains it. Virtual robots without a fault leave 0.99 to
+/// 1.3 times the noise, with encoders ten times as coarse up to twice.
 const SILENT: f64 = 4.0;
 
-/// Says that a residual is far beyond the noise where no check has found why.
+/// The part of the residual's square that a fault explains, at least, which it is said to come from.
+const MOST: f64 = 0.5;
+
+/// Says that a residual is far beyond the noise where no check has found why: something is wrong, and what it does to
+/// the parameters nobody knows.
 pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
-    // That residuals hang together explains none of them.
-    let explains = |check: &Check| !check.passed && check.kind != CheckKind::ResidualCorrelation;
     if all.iter().any(explains) {
         return None;
     }
     let base = context.estimates_of(Stage::Base).next()?;
     let (error, ratio) = (base.relative_error_percent, times_the_noise(context));
     let words = format!(
-        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, and nothing that was looked for explains it. Intervals tell chance alone: an error of the model or of the positions that returns with the motion is not in them. Vary the motion, and compare",
+        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, and nothing that was looked for explains it. Intervals tell chance alone, and what the parameters have taken up of the error is not in them. Look for filters that torques and positions have passed, for play, flexible parts and friction of another kind, or for encoders that are coarse for the motion",
         significant(error, 3),
         significant(ratio, 2)
     );
@@ -40,7 +42,17 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
             SILENT,
             "faultless virtual robots leave 1 to 1.3 times the noise",
         );
-    (ratio.is_finite() && ratio > SILENT).then(|| check.of_model(base.model).found())
+    (ratio.is_finite() && ratio > SILENT).then(|| check.allowing(Grade::DoNotUse))
+}
+
+/// Whether a check that found something lowers the grade by itself, or says what most of the residual comes from. That
+/// residuals hang together explains none of them.
+fn explains(check: &Check) -> bool {
+    let is_cause = match check.explained {
+        Some(part) => part >= MOST,
+        None => check.kind != CheckKind::ResidualCorrelation,
+    };
+    !check.passed && (check.grade != Grade::Use || is_cause)
 }
 
 /// Looks at all estimates.

@@ -1,76 +1,147 @@
-//! Whether dry friction changes its direction where the velocities change their signs.
+//! Whether positions and torques have passed the same filter, and whether dry friction changes its direction where the
+//! velocities change their signs.
 //!
 //! A filter that positions and torques have passed alike does nothing to a model that is linear in them over the time of
-//! the filter. Dry friction is not: what was logged of it is a sign that was filtered, F(sign q̇), and the model has the
-//! sign of what was filtered, sign(F q̇). The delay of the filter falls out, since both have it, and what is left is
-//! s d²/dt² of dry friction with s = ½ Σ w t² about the middle of the weights w(t). Friction that bends before it slides
-//! does the same at each reversal. So one column for all drives, the second derivative of all dry friction, tells both.
+//! the filter; its delay falls out, since all have it. With s = ½ Σ w t² about the middle of the weights w(t), what was
+//! logged of a signal x is x + s ẍ, and what is not linear in the motion tells s: τ̈ is not what the model makes of the
+//! motion's second derivatives. That is one column, of masses that change with the pose as well as of dry friction,
+//! whose logged sign is filtered where the model has the sign of a filtered velocity.
+//!
+//! Friction that bends before it slides does the same at each reversal. The second derivative of all dry friction, one
+//! column for all drives, tells that.
 
 use super::{
     Context,
+    half_band::confirms,
     level::{level, origin},
-    smoothing::{OF_MEAN, UNIT},
-    suspected::{Tested, harm, only, parabola},
+    smoothing::{OF_MEAN, UNIT, harmless},
+    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::Suspect,
+        suspects::{Scores, Suspect},
     },
     error::Error,
     significant,
 };
 
-/// Looks for dry friction that is smoother than the signs of the velocities.
+/// Looks for signals that were all filtered, and for dry friction that is smoother than the signs of the velocities.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let Some(one) = only(scores, Suspect::Dulled) else {
-        return Ok(Vec::new());
-    };
     // A step w that is smoothed loses the part s Σ ẇ²/Σ w² of itself, and Σ ẇ² grows with the band.
-    let one = Tested {
+    let wider = |one: Tested| Tested {
         more: scores.narrower as f64,
         ..one
     };
-    let (accused, level) = (&one.accused, level(1));
-    let time = |size: f64| significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2);
-    let check = |words: String| {
+    let friction = only(scores, Suspect::Dulled).map(wider);
+    let all = only(scores, Suspect::Alike).map(wider);
+    let tests = friction.iter().chain(&all).count();
+    let told = Told {
+        tests,
+        level: level(tests),
+    };
+    let bent = friction.filter(|one| one.accused.probability < told.level);
+    if let Some(found) = filtered(context, all.as_ref(), told.level)? {
+        let explains = |one: &Tested| one.accused.explained;
+        if bent
+            .as_ref()
+            .is_none_or(|one| explains(one) <= explains(found))
+        {
+            return Ok(vec![told.filtered((context, scores), found)]);
+        }
+    }
+    if let Some(bent) = &bent {
+        return Ok(vec![told.bent((context, scores), bent)]);
+    }
+    let shown = only(scores, Suspect::Dulled).map(wider).or(all);
+    let innocent = shown.map(|one| {
+        let visible = one.accused.visible(told.level);
+        told.check((context, scores), &one, format!(
+            "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
+            time(visible)
+        ))
+    });
+    Ok(innocent.into_iter().collect())
+}
+
+/// The time over which a mean smooths as much, ms.
+fn time(size: f64) -> String {
+    significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2)
+}
+
+/// The filter of all signals, if there is one. None makes them rougher.
+fn filtered<'a>(
+    context: &Context<'_>,
+    all: Option<&'a Tested>,
+    level: f64,
+) -> Result<Option<&'a Tested>, Error> {
+    let Some(one) = all else {
+        return Ok(None);
+    };
+    let (accused, harmless) = (&one.accused, harmless(context));
+    let is_beyond = accused.size() > 0.0 && accused.probability_beyond(harmless) < level;
+    let is_there = is_beyond && confirms(context, Suspect::Alike, accused.size())?;
+    Ok(is_there.then_some(one))
+}
+
+/// What sizes are held against.
+struct Told {
+    tests: usize,
+    level: f64,
+}
+
+impl Told {
+    /// A check with words.
+    fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
+        let accused = &one.accused;
         Check::new(CheckKind::Reversals, About::Model, words)
             .measured(
                 accused.size().abs() / accused.deviation,
                 "standard deviations",
             )
-            .against(accused.quantile(level), origin(1))
+            .against(accused.quantile(self.level), origin(self.tests))
             .detecting(vec![one.detectable(
-                (context, scores),
+                of,
                 (String::new(), UNIT),
-                accused.visible(level),
+                accused.visible(self.level),
             )])
             .shown_by(parabola(
                 accused,
                 "Residual for dry friction that is smoothed",
                 ("half of the mean square of the filter's time", "ms²", 1e6),
             ))
-    };
-    if accused.probability >= level {
-        return Ok(vec![check(format!(
-            "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
-            time(accused.visible(level))
-        ))]);
     }
-    let harm = harm(context, scores, &one);
-    let how = match accused.size() > 0.0 {
-        true => format!(
-            "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
-            time(accused.size()),
+
+    /// The check of a filter that all signals have passed.
+    fn filtered(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
+        let mut harm = harm(of.0, of.1, one);
+        // Reversals are rounded off, too.
+        harm.spoil(dry_friction(of.0));
+        let words = format!(
+            "positions and torques look filtered alike, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without, or with a cutoff far above the motion",
+            time(one.accused.size()),
             harm.words()
-        ),
-        false => format!(
-            "dry friction is larger around reversals than the signs of the velocities make it; {}. Look at how velocities are filtered (`velocity_dead_band`, the cutoff), or leave out equations near standstill (`standstill_velocity`)",
-            harm.words()
-        ),
-    };
-    Ok(vec![check(how).because(&harm)])
+        );
+        self.check(of, one, words).because(&harm)
+    }
+
+    /// The check of dry friction that does not change with the signs of the velocities.
+    fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
+        let harm = harm(of.0, of.1, one);
+        let words = match one.accused.size() > 0.0 {
+            true => format!(
+                "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
+                time(one.accused.size()),
+                harm.words()
+            ),
+            false => format!(
+                "dry friction is larger around reversals than the signs of the velocities make it; {}. Look at how velocities are filtered (`velocity_dead_band`, the cutoff), or leave out equations near standstill (`standstill_velocity`)",
+                harm.words()
+            ),
+        };
+        self.check(of, one, words).because(&harm)
+    }
 }

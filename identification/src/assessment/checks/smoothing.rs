@@ -6,6 +6,7 @@
 
 use super::{
     Context,
+    half_band::confirms,
     level::{level, origin},
     suspected::{Tested, dry_friction, harm, only, parabola},
 };
@@ -27,6 +28,13 @@ pub(in crate::assessment) const OF_MEAN: f64 = 24.0;
 /// The unit of s.
 pub(in crate::assessment) const UNIT: &str = "s²";
 
+/// s of a smoothing that is none.
+pub(super) fn harmless(context: &Context<'_>) -> f64 {
+    let intervals = context.dataset.runs.iter();
+    let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
+    intervals.fold(0.0, f64::max).powi(2) / OF_MEAN
+}
+
 /// Looks for torques that are smoother than the motion, or a motion that is smoother than the torques.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
@@ -42,9 +50,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     });
     let whole = whole.as_ref().unwrap_or(&one);
     let level = level(1);
-    let intervals = context.dataset.runs.iter();
-    let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
-    let harmless = intervals.fold(0.0, f64::max).powi(2) / OF_MEAN;
+    let harmless = harmless(context);
     let accused = &one.accused;
     // The time over which a mean would smooth as much, ms.
     let time = |size: f64| significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2);
@@ -75,6 +81,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(vec![check(format!(
             "torques and motion are smoothed alike; a mean of the torques over {} ms would have been seen",
             time(visible)
+        ))]);
+    }
+    if !confirms(context, Suspect::Smoothing, accused.size())? {
+        return Ok(vec![check(format!(
+            "torques and motion are smoothed alike: what looks like a mean over {} ms is not there in half of the band, as where errors of the encoders make it",
+            time(accused.size())
         ))]);
     }
     let mut harm = harm(context, scores, whole);

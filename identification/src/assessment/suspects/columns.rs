@@ -24,6 +24,9 @@ pub(crate) enum Suspect {
     Rounding,
     /// Dry friction is smoother by this time squared (s²) than the signs of the velocities.
     Dulled,
+    /// All signals are smoother than they were by this time squared (s²): what that does to dry friction, and to
+    /// everything else that is not linear in the motion.
+    Alike,
     /// The torque of one actuator is late by so many seconds.
     Late(usize),
     /// The measured torque of an actuator is too large by this part of itself.
@@ -116,6 +119,7 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
         Suspect::Smoothing,
         Suspect::Rounding,
         Suspect::Dulled,
+        Suspect::Alike,
         Suspect::Clock,
     ];
     // Of one drive alone that is the delay of all.
@@ -178,6 +182,8 @@ pub(super) struct Sample<'a> {
     /// By how much Γ¹ would change with the clock, with each error of the position of each actuator, n x errors x
     /// r, and with each length; empty where that is not asked for.
     pub(super) clock: &'a [f64],
+    /// By how much the residual would change with a smoothing of all signals.
+    pub(super) alike: &'a [f64],
     pub(super) misread: &'a [f64],
     pub(super) lengths: &'a [f64],
 }
@@ -257,6 +263,7 @@ impl Sample<'_> {
                 let friction = both.enumerate().map(|(i, (all, rest))| (i, all - rest));
                 friction.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
+            Suspect::Alike => self.alike[line],
             Suspect::Late(i) => -share(i) * self.torque_rates[i],
             Suspect::Gain(i) => share(i) * self.torques[i],
             Suspect::Clock => self.clock[line],

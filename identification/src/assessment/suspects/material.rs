@@ -38,6 +38,7 @@ pub(super) struct Material<'a> {
     torque_turns: Vec<f64>,
     pub(super) actuators: Vec<Moment>,
     clock: Vec<f64>,
+    alike: Vec<f64>,
     misread: Vec<f64>,
     lengths: Vec<f64>,
     /// The payload's columns, r rows each.
@@ -81,6 +82,8 @@ impl<'a> Material<'a> {
         let [velocities, accelerations] = nearby.actuators(motion, jacobians)?;
         let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
         let actuators = moments((motion, Reversal::new(pass.settings)), signals);
+        let torque_turns = rates(&torque_rates, n, frequency);
+        let alike = nearby.alike(motion, [&torques, &torque_turns], jacobians, &actuators)?;
         let suspects = pass.frame.suspects;
         let moved = suspects.iter().any(|one| matches!(one, Suspect::Offset(_)));
         let misread = match moved {
@@ -93,8 +96,9 @@ impl<'a> Material<'a> {
         };
         Ok(Self {
             friction: friction(pass, &base, frequency),
-            torque_turns: rates(&torque_rates, n, frequency),
+            torque_turns,
             torque_bends: rates(&rates(&smooth, n, frequency), n, frequency),
+            alike,
             clock: nearby.clock(motion, &explained.all)?,
             lengths: nearby.lengths(motion, pass.variants, &explained.all)?,
             pose: &motion.pose,
@@ -126,6 +130,7 @@ impl<'a> Material<'a> {
             reaches: self.pass.frame.reaches,
             pose: part(self.pose, sizes.pose),
             clock: part(&self.clock, r),
+            alike: part(&self.alike, r),
             misread: part(&self.misread, Misreading::ALL.len() * n * r),
             lengths: part(&self.lengths, self.pass.variants.len() * r),
         }

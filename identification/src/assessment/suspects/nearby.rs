@@ -3,7 +3,7 @@
 
 use overact::{Function, Model};
 
-use super::shapes::Moment;
+use super::{columns::rates, shapes::Moment};
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::Variant,
@@ -20,6 +20,9 @@ const STEP: f64 = 1e-5;
 
 /// Step of the time, s.
 const INSTANT: f64 = 1e-6;
+
+/// Step of a smoothing, s²: that of a mean over 5 ms, large enough to move a reversal by more than its noise.
+const SQUARE: f64 = 1e-6;
 
 /// How the error of a position depends on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -240,6 +243,54 @@ impl<'a> Nearby<'a> {
             }
         }
         Ok(all)
+    }
+
+    /// By how much Y - W χ changes with s where all signals, torques and positions, become x + s ẍ, samples x r: so
+    /// does a filter that all of them pass, but for a delay (see `checks::smoothing`). What is linear in the motion
+    /// stays as it is. `torques` are those of the actuators, then their second derivatives.
+    pub(super) fn alike(
+        &self,
+        motion: &Motion,
+        torques: [&[f64]; 2],
+        jacobians: &[f64],
+        actuators: &[Moment],
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let velocities: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
+        let accelerations: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
+        let jerks = rates(&accelerations, n, motion.sampling_frequency);
+        let snaps = rates(&jerks, n, motion.sampling_frequency);
+        let smoothed = |values: &[f64], bends: &[f64]| -> Vec<f64> {
+            let both = values.iter().zip(bends);
+            both.map(|(value, bend)| value + SQUARE * bend).collect()
+        };
+        let mut poses = motion.pose.clone();
+        for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
+            let bends = slice(&accelerations, n, sample, 1);
+            if let Some(distribution) = least_norm(slice(jacobians, n * r, sample, 1), r) {
+                let step = transposed_product(&distribution, bends, r);
+                let step: Vec<f64> = step.iter().map(|part| SQUARE * part).collect();
+                self.model.displace(pose, &step);
+            }
+        }
+        let here = self.left(
+            motion,
+            &motion.pose,
+            torques[0],
+            (&velocities, &accelerations),
+        )?;
+        let there = self.left(
+            motion,
+            &poses,
+            &smoothed(torques[0], torques[1]),
+            (
+                &smoothed(&velocities, &jerks),
+                &smoothed(&accelerations, &snaps),
+            ),
+        )?;
+        let both = here.iter().zip(&there);
+        Ok(both.map(|(a, b)| (b - a) / SQUARE).collect())
     }
 
     /// Y - W χ at other poses, velocities and accelerations of the actuators, of the same torques.

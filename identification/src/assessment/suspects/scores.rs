@@ -69,7 +69,8 @@ pub(super) struct Found {
     pub(super) accused: OnceLock<Vec<Option<Accused>>>,
 }
 
-/// Goes through the runs with an estimate of all base parameters; `reaches` are those of the actuators.
+/// Goes through the runs with an estimate of all base parameters; `reaches` are those of the actuators. The band is
+/// so many `times` narrower than that in which suspects are looked for, as far as equations are left.
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been gone through before.
@@ -78,7 +79,7 @@ pub(crate) fn scores(
     (runs, variants): (&[Log], &[Variant<'_>]),
     (columns, base): (&ColumnSet, &[usize]),
     (estimate, reaches): (&Estimate, &[Reach]),
-    (settings, returns): (&Settings, &[Option<Return>]),
+    (settings, returns, times): (&Settings, &[Option<Return>], usize),
 ) -> Result<Scores, Error> {
     let suspects = suspects(model, variants.len(), estimate.model);
     let payload = model.info().payload_parameters;
@@ -91,7 +92,8 @@ pub(crate) fn scores(
     let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
     let beginning = |log: &Log| log.beginning(most.min(log.samples()));
     let runs: Vec<Log> = runs.iter().map(beginning).collect::<Result<_, _>>()?;
-    let narrower = narrower(&runs, settings, (layout.base, model.info().sizes.dof));
+    let sizes = (layout.base, model.info().sizes.dof);
+    let narrower = narrower(&runs, settings, sizes, NARROWER * times);
     let pass = Pass {
         model,
         variants,
@@ -155,15 +157,20 @@ fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
 }
 
 /// By how many times narrower the band of the equations is than that of the estimate, for a model of so
-/// many columns and lines.
-fn narrower(runs: &[Log], settings: &Settings, (columns, lines): (usize, usize)) -> usize {
+/// many columns and lines, at `most`.
+fn narrower(
+    runs: &[Log],
+    settings: &Settings,
+    (columns, lines): (usize, usize),
+    most: usize,
+) -> usize {
     let kept = |log: &Log| log.samples() - settings.skip_start - settings.skip_end;
     if runs.iter().any(|log| kept(log) <= DECIMATION_PADDING) {
         return 1;
     }
     let samples: usize = runs.iter().map(kept).sum();
     let equations = samples * lines / settings.decimation;
-    (equations / (LEAST_EQUATIONS * columns).max(1)).clamp(1, NARROWER)
+    (equations / (LEAST_EQUATIONS * columns).max(1)).clamp(1, most)
 }
 
 /// Places of the columns of dry friction among the base parameters.

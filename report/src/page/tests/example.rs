@@ -328,6 +328,7 @@ fn verdict(model: ModelKind, grade: Grade, listed: &[&str]) -> Verdict {
         trusted: grade == Grade::Use,
         listed: listed.iter().map(|name| (*name).to_owned()).collect(),
         reasons: vec![HOSTILE.to_owned()],
+        rests_on: None,
         stages: vec![StageVerdict {
             stage: Stage::Base,
             grade: Grade::Use,

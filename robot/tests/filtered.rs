@@ -1,0 +1,120 @@
+//! Logs whose signals were filtered, and faultless ones that look as if: coarse encoders, whose errors come back as
+//! accelerations, and a control loop that shakes.
+
+use overact_identification::{Check, CheckKind, Grade, Identification, Log};
+use overact_robot::{Identifier, Robot};
+
+const DELTA: &str = include_str!("../../robots/delta.toml");
+const FIVE_BAR: &str = include_str!("../../robots/five_bar.toml");
+const DUALV: &str = include_str!("../../robots/dualv.toml");
+
+/// A description with another text in the place of one.
+fn with(text: &str, old: &str, new: &str) -> String {
+    let changed = text.replace(old, new);
+    assert_ne!(changed, text);
+    changed
+}
+
+/// What is identified from the virtual runs of a description, of which positions and torques are changed, rows of so
+/// many actuators.
+fn identified(text: &str, change: impl Fn(&mut [f64], &mut [f64], usize)) -> Identification {
+    let robot = Robot::from_text("robot.toml", text).expect("a robot");
+    let experiment = robot.experiment().expect("an experiment");
+    let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
+    let changed = |log: &Log| {
+        let (mut positions, mut torques) = log.load().expect("numbers");
+        let n = log.actuators();
+        change(&mut positions, &mut torques, n);
+        let (name, frequency) = (log.name(), log.sampling_frequency());
+        Log::new(name, frequency, n, positions, torques, log.payload()).expect("a log")
+    };
+    let logs: Vec<Log> = runs.identified.iter().map(changed).collect();
+    Identifier::new(&robot).runs(&logs).run().expect("a result")
+}
+
+/// Rows behind a low-pass of first order; `part` of the way is gone in a sample.
+fn lag(rows: &mut [f64], n: usize, part: f64) {
+    for place in n..rows.len() {
+        rows[place] = rows[place - n] + part * (rows[place] - rows[place - n]);
+    }
+}
+
+/// Rows as means over `count` samples about each.
+fn mean(rows: &mut [f64], n: usize, count: usize) {
+    let (all, half) = (rows.to_vec(), count / 2);
+    for place in half * n..rows.len() - half * n {
+        let around = (0..=2 * half).map(|k| all[place + k * n - half * n]);
+        rows[place] = around.sum::<f64>() / (2 * half + 1) as f64;
+    }
+}
+
+/// The words of the checks of a kind that found something.
+fn found(result: &Identification, kind: CheckKind) -> Vec<String> {
+    let own = |one: &&Check| one.kind == kind && !one.passed;
+    let own = result.checks.iter().filter(own);
+    own.map(Check::located).collect()
+}
+
+#[test]
+fn a_delta_whose_signals_passed_one_low_pass_is_not_trusted() {
+    let lagged = identified(DELTA, |positions, torques, n| {
+        // 5 ms at 1 kHz.
+        let part = 1.0 - (-0.2_f64).exp();
+        lag(positions, n, part);
+        lag(torques, n, part);
+    });
+    assert_ne!(lagged.grade(), Grade::Use);
+    assert_eq!(identified(DELTA, |_, _, _| ()).grade(), Grade::Use);
+}
+
+#[test]
+fn a_filter_of_all_signals_is_told_by_masses_that_change_with_the_pose() {
+    let smooth: Vec<String> = DELTA
+        .lines()
+        .map(|line| match line.starts_with("fs_") {
+            true => format!("# {line}"),
+            false => line.to_owned(),
+        })
+        .collect();
+    let result = identified(&smooth.join("\n"), |positions, torques, n| {
+        mean(positions, n, 17);
+        mean(torques, n, 17);
+    });
+    let words = found(&result, CheckKind::Reversals).join("\n");
+    let named = [
+        "filtered alike, as by a mean of all signals over 17 ms",
+        "over 16 ms",
+    ];
+    assert!(named.iter().any(|one| words.contains(one)), "{words}");
+    assert_ne!(result.grade(), Grade::Use);
+}
+
+#[test]
+fn coarse_encoders_are_no_filter_of_the_torques() {
+    let coarse = with(FIVE_BAR, "encoder = \"1e-5 rad\"", "encoder = \"1e-4 rad\"");
+    let result = identified(&coarse, |_, _, _| ());
+    assert_eq!(found(&result, CheckKind::Filters), Vec::<String>::new());
+    assert_eq!(found(&result, CheckKind::Reversals), Vec::<String>::new());
+    assert_eq!(result.grade(), Grade::Use);
+    // A filter is one with such encoders, too: 20 ms at 2 kHz.
+    let result = identified(&coarse, |_, torques, n| mean(torques, n, 40));
+    let words = found(&result, CheckKind::Filters).join("\n");
+    assert!(words.contains("the torques are smoother"), "{words}");
+}
+
+#[test]
+fn a_loop_that_shakes_for_a_delay_of_its_drives_accuses_no_length() {
+    let short = with(DUALV, "duration = \"10 s\"", "duration = \"3 s\"");
+    let shaking = with(
+        &short,
+        "seed = 1\n",
+        "seed = 1\ndrives = { delay = \"1 ms\" }\n",
+    );
+    let result = identified(&shaking, |_, _, _| ());
+    assert_eq!(found(&result, CheckKind::Closure), Vec::<String>::new());
+    // An encoder that is off is accused all the same.
+    let result = identified(&shaking, |positions, _, n| {
+        positions.iter_mut().step_by(n).for_each(|q| *q += 3e-3);
+    });
+    assert!(!found(&result, CheckKind::Closure).is_empty());
+}
