@@ -41,6 +41,16 @@ fn a_good_file_is_read() {
 }
 
 #[test]
+fn a_value_that_nothing_measures_is_named_with_its_line() {
+    let (log, folder) = csv("time,q_1,tau_1\n0,1,3\n0.1,2,1e300\n0.2,5,6\n");
+    assert_eq!(
+        text(log, folder.path()),
+        "log.csv:3: sample 1: `tau_1` is 1e300, which nothing measures\n  help: cut the run there, or \
+         look at how the log was written"
+    );
+}
+
+#[test]
 fn a_missing_file_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let mapping = Mapping::for_robot(&EMPS.info());

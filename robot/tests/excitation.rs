@@ -235,3 +235,21 @@ fn a_time_that_is_up_ends_the_random_series_too() {
     assert!(found.assumed.contains(&told), "{:?}", found.assumed);
     keeps_limits(&written(&robot, &found), &found);
 }
+
+#[test]
+fn speeds_that_nothing_limits_are_told() {
+    let robot = library("five_bar");
+    let (text, _) = robot
+        .source()
+        .text
+        .split_once("[[experiment.run]]")
+        .expect("runs");
+    let bare = |limit: &str| {
+        let text = format!("{text}\n[excitation]\nruns = 1\n{limit}");
+        let robot = Robot::from_text("bare.toml", &text).expect("a robot");
+        let told = excited(&robot).assumed.join("\n");
+        told.contains("nothing limits the speeds") && told.contains("rad/s")
+    };
+    assert!(bare(""));
+    assert!(!bare("velocity = \"9 rad/s\"\n"));
+}

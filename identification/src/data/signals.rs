@@ -138,8 +138,8 @@ impl Signals {
     }
 }
 
-/// The largest value of a position, velocity or torque in SI units that is taken for measured.
-const LARGEST: f64 = 1e15;
+/// The largest value of a position, velocity or torque that is taken for measured: beyond what a counter of 64 bits has.
+const LARGEST: f64 = 1e20;
 
 /// Whether a value can have been measured: a finite number that is not beyond anything.
 pub(super) fn is_measurable(value: f64) -> bool {

@@ -4,6 +4,7 @@ use super::course::{Bench, Course};
 use super::frame::Frame;
 use super::kind::LimitKind;
 use overact_codegen::description::{self, Description};
+use overact_identification::significant;
 use overact_simulation::Trajectory;
 use serde::Serialize;
 
@@ -81,6 +82,30 @@ impl Limit {
 pub(super) fn uses(course: &Course, limits: &[Limit], between: bool) -> Vec<f64> {
     let used = |limit: &Limit| limit.used(&course.peaks(limit.kind, between));
     limits.iter().map(used).collect()
+}
+
+/// What runs ask of the actuators' speeds where nothing limits them, in words.
+pub(super) fn unlimited_speeds(
+    bench: &Bench<'_>,
+    limits: &[Limit],
+    found: &[(Frame, Trajectory)],
+) -> Option<String> {
+    if limits.iter().any(|limit| limit.kind == LimitKind::Velocity) {
+        return None;
+    }
+    let courses = found.iter();
+    let courses = courses.filter_map(|(frame, run)| bench.course(frame, run, SAMPLES).ok());
+    let peaks = reached_by(&courses.collect::<Vec<_>>(), LimitKind::Velocity)?;
+    let units = bench.units(LimitKind::Velocity);
+    let names = bench.info.actuators.iter();
+    let all = names.zip(peaks.iter().zip(units));
+    let all: Vec<String> = all
+        .map(|(name, (peak, unit))| format!("`{name}` {} {unit}", significant(*peak, 3)))
+        .collect();
+    Some(format!(
+        "nothing limits the speeds (`velocity` of [excitation] does): the runs that were found reach {}",
+        all.join(", ")
+    ))
 }
 
 /// The limits of a description; `described` are its own runs to identify from.

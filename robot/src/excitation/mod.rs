@@ -324,6 +324,7 @@ impl<'a> Task<'a> {
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
         let duration =
             |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
+        assumed.extend(limits::unlimited_speeds(&self.bench, &self.limits, &found));
         let whole = duration(&found);
         let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
         let described = judged(&self.described);
