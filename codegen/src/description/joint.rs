@@ -263,7 +263,14 @@ impl Reader<'_, '_, '_> {
 /// radian where the unit says so. `None` after an error.
 fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
     let item = item?;
-    let value = item.evaluate(&scope.without_variables())?;
+    let value = item.evaluate(scope)?;
+    let help = "give what the joint goes along for a turn, for instance \"5 mm\"; negative of a left-hand thread";
+    if !value.terms.is_empty() {
+        let message = "a pitch is constant and cannot hold a joint variable";
+        let error = item.error(Code::JOINT_POSITION, message).help(help);
+        item.context.report_once(error);
+        return None;
+    }
     let per_radian = Dimension::ANGLE
         .power(-1)
         .and_then(|per_radian| Dimension::LENGTH.times(per_radian));
@@ -277,7 +284,6 @@ fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
     };
     if lead.is_none_or(Ratio::is_zero) {
         let message = "a pitch has to move something, by less than 1e6 m";
-        let help = "give what the joint goes along for a turn, for instance \"5 mm\"; negative of a left-hand thread";
         item.context
             .report_once(item.error(Code::OUT_OF_RANGE, message).help(help));
         return None;

@@ -186,6 +186,13 @@ fn a_pitch_is_a_length_that_moves_something() {
         "{}",
         one("pitch = 0")
     );
+    for variable in ["q", "2 * q", "q + 0.1"] {
+        let told = one(&format!("pitch = \"{variable}\""));
+        assert!(
+            told.contains("8:9 a pitch is constant and cannot hold a joint variable"),
+            "{told}"
+        );
+    }
     let unit = one("pitch = \"5 kg\"");
     assert!(
         unit.contains("8:9 `pitch`: expected a length (m), found a mass"),
