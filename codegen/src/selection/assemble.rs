@@ -73,15 +73,21 @@ impl Assembler<'_> {
         }
         let searched = distinct(searched);
         let mut best: Option<Program> = None;
-        let closing = self.closing(function, from, &searched)?;
-        let selections = searched.iter().map(|form| &form.selection).chain(&closing);
-        for selection in selections {
+        for Form { selection, .. } in &searched {
             let form = Assembler { selection, ..*self }.program(function, from)?;
             if best.as_ref().is_none_or(|best| is_cheaper(&form, best)) {
                 best = Some(form);
             }
         }
-        best.map_or_else(|| self.program(function, from), Ok)
+        let Some(best) = best else {
+            return self.program(function, from);
+        };
+        match self.closing(function, from, &searched)? {
+            Some(other) if is_cheaper(&other, &best) && weighed(&other) < weighed(&best) => {
+                Ok(other)
+            }
+            _ => Ok(best),
+        }
     }
 
     /// What the closing change makes the cheapest of some forms, where a short search says that it pays for that one.
@@ -90,11 +96,12 @@ impl Assembler<'_> {
         function: Function,
         from: MotionInput,
         forms: &[Form],
-    ) -> Result<Option<Selection>, Underivable> {
+    ) -> Result<Option<Program>, Underivable> {
         let change = formulation::closing_choice(self.mechanism, function);
         let Some(change) = change.filter(|_| self.search.is_thorough()) else {
             return Ok(None);
         };
+        let after = |selection: &Selection| self.after_short_search(selection, function, from);
         let mut found: Option<(usize, Selection)> = None;
         for Form { selection, .. } in forms {
             let Some(formulation) = change.of(&selection.formulation) else {
@@ -104,13 +111,15 @@ impl Assembler<'_> {
                 formulation,
                 ..selection.clone()
             };
-            let after = |selection| self.after_short_search(selection, function, from);
             let least = after(&other)?;
             if least < after(selection)? && found.as_ref().is_none_or(|(known, _)| least < *known) {
                 found = Some((least, other));
             }
         }
-        Ok(found.map(|(_, selection)| selection))
+        let program = |(_, selection): &(usize, Selection)| {
+            Assembler { selection, ..*self }.program(function, from)
+        };
+        found.as_ref().map(program).transpose()
     }
 
     /// The forms of a function with their operations before a search: those of the robot's formulation, and of
@@ -375,6 +384,13 @@ impl Assembler<'_> {
             ..self.selection.clone()
         })
     }
+}
+
+/// Operations of a program, each division as four: processors take that long from one to the next, and sums over
+/// divisors may be more divisions.
+fn weighed(program: &Program) -> usize {
+    let cost = program.cost();
+    cost.operations() + 3 * cost.divisions
 }
 
 /// Forms of which each is searched once, though several ways may have led to it.

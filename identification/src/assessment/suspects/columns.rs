@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use overact::Model;
 
-use super::nearby::Misreading;
+use super::misreading::Misreading;
 use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
 use crate::{
     filters::central_differences,

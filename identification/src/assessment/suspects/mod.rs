@@ -29,6 +29,7 @@
 //!
 //! - `shapes`: how something missing may depend on the motion;
 //! - `columns`: the suspects and their columns;
+//! - `misreading`: how the error of an encoder depends on where it stands;
 //! - `nearby`: what the model would explain of a motion that is slightly different;
 //! - `sections`: products of columns and residual, section by section of the time;
 //! - `pairs`: residuals of actuators that hang together;
@@ -50,6 +51,7 @@ mod columns;
 mod course;
 mod group;
 mod material;
+mod misreading;
 mod nearby;
 mod pairs;
 mod pass;
@@ -65,7 +67,7 @@ pub(crate) use accused::Accused;
 pub(crate) use columns::Suspect;
 pub(crate) use course::Pace;
 pub(crate) use group::Group;
-pub(crate) use nearby::Misreading;
+pub(crate) use misreading::Misreading;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};
