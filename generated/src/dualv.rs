@@ -36,7 +36,7 @@
 /// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 699, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
 /// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
@@ -6390,7 +6390,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 699 operations (250 additions, 423 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 29 negations, 605 intermediates.
+    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 40 negations, 607 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -6412,8 +6412,6 @@ impl DualV {
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
-        /// l_ab r_p
-        const L_AB_R_P: ::core::primitive::f64 = 0.0308;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -6458,10 +6456,6 @@ impl DualV {
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let c12_leg3 = INV_L_AB * l2_x_leg3;
-        let s12_leg3 = INV_L_AB * l2_y_leg3;
-        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
-        let g1_wz_leg3 = L_AB_R_P * c3_leg3 / det_leg3;
         // --- leg1
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
@@ -6485,19 +6479,15 @@ impl DualV {
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let det_ja = g1_wz_leg3 * t1;
+        let t2 = p_y_leg1 * t1;
+        let t3 = p_x_leg3 * t1;
+        let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
-        let c12_leg1 = INV_L_AB * l2_x_leg1;
-        let s12_leg1 = INV_L_AB * l2_y_leg1;
-        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let minus_g1_wz_leg1 = L_AB_R_P * minus_c3_leg1 / det_leg1;
-        // --- leg2
-        let c12_leg2 = INV_L_AB * l2_x_leg2;
-        let s12_leg2 = INV_L_AB * l2_y_leg2;
-        let minus_c3_leg2 = c_phi * c12_leg2 + s_phi * s12_leg2;
-        let g1_wz_leg2 = L_AB_R_P * minus_c3_leg2 / det_leg2;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -6505,13 +6495,8 @@ impl DualV {
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let c12_leg4 = INV_L_AB * l2_x_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let s12_leg4 = INV_L_AB * l2_y_leg4;
-        let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         ::overact::guard::platform(
@@ -6519,11 +6504,14 @@ impl DualV {
             3.5376915986291904,
             ::overact::ActuatorGroup::Kept,
         )?;
-        let minus_g1_wz_leg4 = L_AB_R_P * c3_leg4 / det_leg4;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -6536,7 +6524,6 @@ impl DualV {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l_3_1 = s_1_3 * inv_pivot_1;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
             + minus_g1_vy_leg4 * minus_g1_wz_leg4;
@@ -6561,27 +6548,27 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_3 = 1.0 / pivot_3;
-        let t2 = g1_vx_leg1 * actuator_velocities[0]
+        let t4 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t3 = g1_vy_leg1 * actuator_velocities[0]
+        let t5 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t2;
-        let t4 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t2 - l_3_2 * t3;
-        let wz = inv_pivot_3 * t4;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t4 - l_3_2 * t5;
+        let wz = inv_pivot_3 * t6;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
         let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
         let v_arm_y_leg3 = p_x_leg3 * wz;
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let vy = inv_pivot_2 * t3 - l_3_2 * wz;
-        let vx = inv_pivot_1 * t2 - l_2_1 * vy - l_3_1 * wz;
+        let vy = inv_pivot_2 * t5 - l_3_2 * wz;
+        let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -6649,20 +6636,20 @@ impl DualV {
         let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
         let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
             - bias_rate_dot_1_leg4;
-        let t5 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+        let t7 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
             - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
-        let t6 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+        let t8 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t5;
-        let t7 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t7;
+        let t9 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t5
-            - l_3_2 * t6;
-        let dwz = inv_pivot_3 * t7;
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
+            - l_3_2 * t8;
+        let dwz = inv_pivot_3 * t9;
         let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
             * half_per_det_ja;
         let wz_by_a3 = t1 * half_per_det_ja;
@@ -6675,15 +6662,15 @@ impl DualV {
             * half_per_det_ja;
         let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let dvy = inv_pivot_2 * t6 - l_3_2 * dwz;
-        let dvx = inv_pivot_1 * t5 - l_2_1 * dvy - l_3_1 * dwz;
+        let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t7 - l_2_1 * dvy - l_3_1 * dwz;
         let a_y_platform = c_phi * dvy - s_phi * dvx;
         let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
             * half_per_det_ja;
         let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
             * half_per_det_ja;
-        let vy_by_a3 = p_x_leg3 * wz_by_a3;
-        let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        let vy_by_a3 = t3 * half_per_det_ja;
+        let vx_by_a3 = t2 * half_per_det_ja;
         let a_x_platform = s_phi * dvy + c_phi * dvx;
         let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
         // --- leg1
@@ -6717,23 +6704,27 @@ impl DualV {
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let g1_wz_per_det_ja_leg3 = g1_wz_leg3 / det_ja;
-        let minus_g2_a2_leg1 = g1_wz_per_det_ja_leg3 / det_leg1;
-        let minus_g2_a1_leg2 = g1_wz_per_det_ja_leg3 / det_leg2;
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - minus_g2_vx_leg1 * vx_by_a2
+            - g2_wz_leg1 * minus_wz_by_a2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+            - minus_g2_wz_leg2 * wz_by_a1;
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
             + minus_g2_wz_leg2 * minus_wz_by_a2;
-        let minus_g2_a1_leg3 = g1_wz_leg2 / det_ja / det_leg3;
+        let minus_g2_a3_leg3 = 2.0
+            * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-        let minus_g2_a2_leg3 = minus_g1_wz_leg1 / det_ja / det_leg3;
-        let minus_g2_a3_leg3 = 2.0
-            * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+        let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2 - minus_g2_vx_leg3 * vx_by_a2
+            + minus_g2_wz_leg3 * minus_wz_by_a2;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
             + g2_wz_leg4 * wz_by_a1;
@@ -6762,14 +6753,14 @@ impl DualV {
         let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
         let qd_3_leg1 = minus_rate_2_leg1 + wz;
         let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-        let off_3_leg1_on_q1_leg2 = minus_g2_a2_leg1 - minus_wz_by_a2;
+        let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
         let qd_3_leg2 = wz - rate_2_leg2;
-        let wz_by_a1_minus_g2_a1_leg2 = minus_g2_a1_leg2 + wz_by_a1;
+        let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
         let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
         // --- leg3
         let qd_3_leg3 = minus_rate_2_leg3 + wz;
-        let wz_by_a1_minus_g2_a1_leg3 = minus_g2_a1_leg3 + wz_by_a1;
-        let wz_by_a2_minus_g2_a2_leg3 = minus_g2_a2_leg3 - minus_wz_by_a2;
+        let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+        let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
         let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
         // --- leg4
         let qd_3_leg4 = wz - rate_2_leg4;
@@ -6801,24 +6792,24 @@ impl DualV {
                 0.0,
                 g1_a1_leg4,
                 -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                -(minus_g2_a1_leg2 * rate_dot_2_leg2),
-                minus_g2_a1_leg3 * minus_rate_dot_2_leg3,
+                g2_a1_leg2 * rate_dot_2_leg2,
+                -(g2_a1_leg3 * minus_rate_dot_2_leg3),
                 g2_a1_leg4 * rate_dot_2_leg4,
                 INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
-                minus_g2_a1_leg2 * a2_x_leg2,
-                minus_g2_a1_leg3 * a2_x_leg3,
+                -(g2_a1_leg2 * a2_x_leg2),
+                -(g2_a1_leg3 * a2_x_leg3),
                 g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
                 -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                -(minus_g2_a1_leg2 * qd_2_leg2),
-                minus_g2_a1_leg3 * minus_qd_2_leg3,
+                g2_a1_leg2 * qd_2_leg2,
+                -(g2_a1_leg3 * minus_qd_2_leg3),
                 qd_2_leg4 * off_2_leg4_on_q1_leg1,
                 -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
-                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2),
-                ::overact::math::signed(minus_g2_a1_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3),
                 ::overact::math::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
                 off_2_leg1_on_q1_leg1,
-                -minus_g2_a1_leg2,
-                -minus_g2_a1_leg3,
+                g2_a1_leg2,
+                g2_a1_leg3,
                 off_2_leg4_on_q1_leg1,
                 qd_3_leg1 * off_3_leg1_on_q1_leg1,
                 qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
@@ -6853,35 +6844,35 @@ impl DualV {
                 1.0,
                 0.0,
                 g1_a2_leg4,
-                minus_g2_a2_leg1 * minus_rate_dot_2_leg1,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1),
                 g2_a2_leg2 * rate_dot_2_leg2,
-                minus_g2_a2_leg3 * minus_rate_dot_2_leg3,
+                -(g2_a2_leg3 * minus_rate_dot_2_leg3),
                 g2_a2_leg4 * rate_dot_2_leg4,
-                minus_g2_a2_leg1 * a2_x_leg1,
+                -(g2_a2_leg1 * a2_x_leg1),
                 INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
-                minus_g2_a2_leg3 * a2_x_leg3,
+                -(g2_a2_leg3 * a2_x_leg3),
                 g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
-                minus_g2_a2_leg1 * minus_qd_2_leg1,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
                 qd_2_leg2 * off_2_leg2_on_q1_leg2,
-                minus_g2_a2_leg3 * minus_qd_2_leg3,
+                -(g2_a2_leg3 * minus_qd_2_leg3),
                 qd_2_leg4 * off_2_leg4_on_q1_leg2,
-                ::overact::math::signed(minus_g2_a2_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
                 ::overact::math::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
-                ::overact::math::signed(minus_g2_a2_leg3, minus_qd_2_leg3),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3),
                 ::overact::math::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
-                -minus_g2_a2_leg1,
+                g2_a2_leg1,
                 off_2_leg2_on_q1_leg2,
-                -minus_g2_a2_leg3,
+                g2_a2_leg3,
                 off_2_leg4_on_q1_leg2,
-                qd_3_leg1 * off_3_leg1_on_q1_leg2,
+                -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
                 -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2),
-                qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3,
+                -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3),
                 -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4),
-                ::overact::math::signed(off_3_leg1_on_q1_leg2, qd_3_leg1),
+                -::overact::math::signed(minus_off_3_leg1_on_q1_leg2, qd_3_leg1),
                 -::overact::math::signed(g2_a2_minus_wz_by_a2_leg2, qd_3_leg2),
-                ::overact::math::signed(wz_by_a2_minus_g2_a2_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg3, qd_3_leg3),
                 -::overact::math::signed(g2_a2_minus_wz_by_a2_leg4, qd_3_leg4),
-                off_3_leg1_on_q1_leg2,
+                -minus_off_3_leg1_on_q1_leg2,
             ],
             [
                 zz_platform_on_q1_leg3,

@@ -27,13 +27,13 @@
 /// | `acceleration_from_actuators` | 89, 2 √, 7 gd |  |
 /// | `idm_red_platform` | 194, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_from_joints` | 161, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_from_actuators` | 222, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `idm_red_platform_from_actuators` | 224, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `idm_red_actuators` | 182, 2 √, 4 sg, 7 gd |  |
 /// | `idm_red_actuators_from_joints` | 153, 4 sc, 4 sg, 3 gd |  |
 /// | `idm_red_actuators_from_actuators` | 208, 3 √, 2 sc, 4 sg, 10 gd |  |
 /// | `idm_red_platform_base` | 166, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_base_from_joints` | 129, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 192, 3 √, 2 sc, 4 sg, 9 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 195, 3 √, 2 sc, 4 sg, 9 gd |  |
 /// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 7 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 135, 4 sc, 4 sg, 3 gd |  |
 /// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 10 gd |  |
@@ -1464,7 +1464,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 222 operations (66 additions, 144 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 181 intermediates.
+    /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1509,20 +1509,19 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let gq2_vx_left = d_x_left / det_left;
-        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let gq2_vy_left = pose[1] / det_left;
-        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1532,16 +1531,14 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_gq2_vy_right = pose[1] / det_right;
-        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let g1_vy_right = l2_y_right * k_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_gq2_vx_right = d_x_right / det_right;
-        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
             t1,
@@ -1549,6 +1546,7 @@ impl FiveBar {
             ::overact::ActuatorGroup::All,
         )?;
         let t2 = 1.0 / t1;
+        let g2_vy_left = l1_y_left * k_left;
         let vy = t2
             * (g1_vx_right * actuator_velocities[0]
                 + minus_g1_vx_left * actuator_velocities[1]);
@@ -1566,6 +1564,8 @@ impl FiveBar {
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
@@ -1603,6 +1603,7 @@ impl FiveBar {
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
         let qd_2_left = rate_2_left - actuator_velocities[0];
+        let t4_left = ::overact::math::sign(qd_2_left) / det_left;
         // --- right
         let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
         let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
@@ -1626,6 +1627,7 @@ impl FiveBar {
             + s2_right * bias_a1_y_plus_l_1_qdd1_right;
         let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
         let qd_2_right = rate_2_right - actuator_velocities[1];
+        let t4_right = ::overact::math::sign(qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
                 -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
@@ -1638,7 +1640,7 @@ impl FiveBar {
                         + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx,
                 minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
                 -minus_m_2_left_on_vx,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                d_x_left * t4_left,
                 zz_1_right_on_vx,
                 g1_vx_right * bias_a1_y_right,
                 -(g1_vx_right * bias_a1_x_right),
@@ -1653,7 +1655,7 @@ impl FiveBar {
                             - 1.5625 * minus_zz_2_right_on_vx)),
                 minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
                 m_2_right_on_vx,
-                -::overact::math::signed(minus_gq2_vx_right, qd_2_right),
+                -(d_x_right * t4_right),
                 -minus_dvx,
             ],
             [
@@ -1668,7 +1670,7 @@ impl FiveBar {
                             + 1.5625 * minus_zz_2_left_on_vy),
                 minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
                 -minus_m_2_left_on_vy,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                pose[1] * t4_left,
                 zz_1_right_on_vy,
                 g1_vy_right * bias_a1_y_right,
                 -(g1_vy_right * bias_a1_x_right),
@@ -1683,7 +1685,7 @@ impl FiveBar {
                             - 1.5625 * minus_zz_2_right_on_vy),
                 minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
                 m_2_right_on_vy,
-                -::overact::math::signed(minus_gq2_vy_right, qd_2_right),
+                -(pose[1] * t4_right),
                 m_platform_on_vy,
             ],
         ])
@@ -2603,7 +2605,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 192 operations (58 additions, 116 multiplications, 18 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 159 intermediates.
+    /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2622,8 +2624,6 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_2
         const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
@@ -2644,11 +2644,10 @@ impl FiveBar {
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_gq2_vy_right = pose[1] / det_right;
-        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let g1_vy_right = l2_y_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -2657,25 +2656,22 @@ impl FiveBar {
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g2_vy_left = l1_y_left / det_left;
-        // --- right
+        let k_left = 1.0 / det_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left * k_left;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_gq2_vx_right = d_x_right / det_right;
-        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
-        // --- left
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let g2_vx_left = l1_x_left / det_left;
-        let gq2_vx_left = d_x_left / det_left;
-        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
-        let gq2_vy_left = pose[1] / det_left;
-        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
             t1,
@@ -2684,27 +2680,28 @@ impl FiveBar {
         )?;
         let vy = (g1_vx_right * actuator_velocities[0]
             + minus_g1_vx_left * actuator_velocities[1]) / t1;
+        let g2_vx_left = l1_x_left * k_left;
         let minus_vx = (g1_vy_right * actuator_velocities[0]
             + minus_g1_vy_left * actuator_velocities[1]) / t1;
         let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
-        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
-            + rate_1_squared_left * t3_left) / det_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
@@ -2718,27 +2715,29 @@ impl FiveBar {
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
         let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
             - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = (a_on_f2_left - rate_2_squared_left * t3_left)
-            / det_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
             - minus_bias_a_on_f2_right;
         let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t3_right);
+            * (a_on_f2_right - rate_2_squared_right * t2_right);
         // --- left
         let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
-        let c2_left = INV_HALF * t2_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
         // --- right
-        let c2_right = INV_HALF * t2_right;
+        let c2_right = t2_right * L_1_PER_HALF_SQUARED;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
         let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
         let qd_2_left = rate_2_left - actuator_velocities[0];
+        let t3_left = ::overact::math::signed(k_left, qd_2_left);
         let qd_2_right = rate_2_right - actuator_velocities[1];
+        let t3_right = ::overact::math::sign(qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
                 -minus_dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
@@ -2752,8 +2751,7 @@ impl FiveBar {
                 -(minus_g2_vx_right * rate_dot_2_right),
                 minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
                 minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
-                -::overact::math::signed(minus_gq2_vx_right, qd_2_right),
+                d_x_left * t3_left, -(d_x_right * t3_right),
             ],
             [
                 dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
@@ -2767,8 +2765,7 @@ impl FiveBar {
                 -(minus_g2_vy_right * rate_dot_2_right),
                 minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
                 minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
-                -::overact::math::signed(minus_gq2_vy_right, qd_2_right),
+                pose[1] * t3_left, -(pose[1] * t3_right),
             ],
         ])
     }

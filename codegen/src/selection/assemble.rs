@@ -90,7 +90,8 @@ impl Assembler<'_> {
         }
     }
 
-    /// What the closing change makes the cheapest of some forms, where a short search says that it pays for that one.
+    /// What the closing change makes the cheapest of some forms, where it pays for that one before a search and after
+    /// a short one.
     fn closing(
         &self,
         function: Function,
@@ -101,6 +102,7 @@ impl Assembler<'_> {
         let Some(change) = change.filter(|_| self.search.is_thorough()) else {
             return Ok(None);
         };
+        let before = |selection: &Selection| self.operations(selection, function, from);
         let after = |selection: &Selection| self.after_short_search(selection, function, from);
         let mut found: Option<(usize, Selection)> = None;
         for Form { selection, .. } in forms {
@@ -111,6 +113,9 @@ impl Assembler<'_> {
                 formulation,
                 ..selection.clone()
             };
+            if before(&other)? >= before(selection)? {
+                continue;
+            }
             let least = after(&other)?;
             if least < after(selection)? && found.as_ref().is_none_or(|(known, _)| least < *known) {
                 found = Some((least, other));
