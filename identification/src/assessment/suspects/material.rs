@@ -6,7 +6,8 @@ use overact::Function;
 
 use super::{
     columns::{Sample, Suspect, moments, rates},
-    nearby::{Misreading, Nearby, dot},
+    misreading::Misreading,
+    nearby::{Nearby, dot},
     pass::Pass,
     shapes::Moment,
 };
