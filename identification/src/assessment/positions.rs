@@ -169,8 +169,8 @@ fn rows(log: &Log) -> Result<Vec<f64>, Error> {
 /// The largest distance of positions from those that their poses ask for, or `None` where one has no
 /// pose.
 fn miss(model: &dyn Model, rows: &[f64]) -> Option<f64> {
-    let mut closing = Closing::new(model);
-    closing.take(rows).then_some(closing.largest)
+    let mut misses = Misses::new(model);
+    misses.take(rows).then_some(misses.largest)
 }
 
 /// The largest distance of a run's positions, as they were logged, from those that their poses ask for, or `None`
@@ -181,22 +181,22 @@ fn miss(model: &dyn Model, rows: &[f64]) -> Option<f64> {
 pub(crate) fn unfiltered_miss(model: &dyn Model, log: &Log) -> Result<Option<f64>, Error> {
     let n = log.actuators();
     let stride = ((OFTEN * log.sampling_frequency()) as usize).max(1);
-    let mut closing = Closing::new(model);
+    let mut misses = Misses::new(model);
     let mut reader = log.reader()?;
     let mut sample = 0_usize;
     while let Some(block) = reader.next()? {
         for row in block.positions.chunks_exact(n) {
-            if sample.is_multiple_of(stride) && !closing.take(row) {
+            if sample.is_multiple_of(stride) && !misses.take(row) {
                 return Ok(None);
             }
             sample += 1;
         }
     }
-    Ok(Some(closing.largest))
+    Ok(Some(misses.largest))
 }
 
-/// How well positions close the loops, row by row.
-struct Closing<'a> {
+/// By how much positions miss the closure of the loops, row by row.
+struct Misses<'a> {
     model: &'a dyn Model,
     /// The pose of the row before; none before the first one.
     pose: Option<Vec<f64>>,
@@ -204,7 +204,7 @@ struct Closing<'a> {
     largest: f64,
 }
 
-impl<'a> Closing<'a> {
+impl<'a> Misses<'a> {
     fn new(model: &'a dyn Model) -> Self {
         Self {
             model,
