@@ -118,3 +118,14 @@ fn a_loop_that_shakes_for_a_delay_of_its_drives_accuses_no_length() {
     });
     assert!(!found(&result, CheckKind::Closure).is_empty());
 }
+
+/// At the edge of the workspace, where swapped positions bring a robot, a motion that is smoother leaves it.
+#[test]
+fn swapped_positions_are_told_and_not_refused() {
+    let short = with(FIVE_BAR, "duration = \"10 s\"", "duration = \"2.5 s\"");
+    let result = identified(&short, |positions, _, n| {
+        positions.chunks_exact_mut(n).for_each(|row| row.swap(0, 1));
+    });
+    let words = found(&result, CheckKind::SwappedColumns).join("\n");
+    assert!(words.contains("look swapped"), "{words}");
+}

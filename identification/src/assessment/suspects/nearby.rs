@@ -203,7 +203,8 @@ impl<'a> Nearby<'a> {
 
     /// By how much Y - W χ changes with s where all signals, torques and positions, become x + s ẍ, samples x r: so
     /// does a filter that all of them pass, but for a delay (see `checks::smoothing`). What is linear in the motion
-    /// stays as it is. `torques` are those of the actuators, then their second derivatives.
+    /// stays as it is. `torques` are those of the actuators, then their second derivatives. Zero, which tells nothing,
+    /// where positions that are not what they seem leave the workspace with that.
     pub(super) fn alike(
         &self,
         motion: &Motion,
@@ -244,7 +245,10 @@ impl<'a> Nearby<'a> {
                 &smoothed(&velocities, &jerks),
                 &smoothed(&accelerations, &snaps),
             ),
-        )?;
+        );
+        let Ok(there) = there else {
+            return Ok(vec![0.0; here.len()]);
+        };
         let both = here.iter().zip(&there);
         Ok(both.map(|(a, b)| (b - a) / SQUARE).collect())
     }
