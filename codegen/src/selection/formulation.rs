@@ -136,6 +136,14 @@ impl Change {
         matches!(self, Self::Plain | Self::Station(_, 0))
     }
 
+    /// A selection with the change; `None` where it is written so already.
+    pub(super) fn on(&self, selection: &Selection) -> Option<Selection> {
+        Some(Selection {
+            formulation: self.of(&selection.formulation)?,
+            ..selection.clone()
+        })
+    }
+
     /// The formulation with the change; `None` where it is written so already.
     pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
         let mut changed = formulation.clone();

@@ -6,13 +6,16 @@
 //! independent columns are found over random states in the symmetric order (43) ([`columns`], [`base`]).
 //! Every other column is a constant combination of them, and is written as one where that takes fewer
 //! operations ([`combine`]). All choices go by one measure: the operations of the program that
-//! [`assemble`] makes of a function, searched as far as [`search`] says. Where the parameters are known,
-//! [`values`] says which numbers stand for them. Legs that are alike may run side by side, as [`lanes`] says.
+//! [`assemble`] makes of a function in the cheapest of its [`forms`], searched as far as [`search`] says.
+//! Where the parameters are known, [`values`] says which numbers stand for them. Legs that are alike may run
+//! side by side, as [`lanes`] says.
 
 mod assemble;
 mod base;
 mod columns;
 mod combine;
+mod form;
+mod forms;
 mod formulation;
 mod lanes;
 mod regressor;
