@@ -23,19 +23,40 @@ const SILENT: f64 = 4.0;
 /// The part of the residual's square that a fault explains, at least, which it is said to come from.
 const MOST: f64 = 0.5;
 
+/// Percent of the inputs that may stay unexplained where a fault is named that explains less than that. Measured robots
+/// have friction that no column tells: beside what is found, those of `docs/measured.md` leave 3 to 5 %.
+const ORDINARY_PERCENT: f64 = 5.0;
+
 /// Says that a residual is far beyond the noise where no check has found why: something is wrong, and what it does to
 /// the parameters nobody knows.
 pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
-    if all.iter().any(explains) {
+    let found = || all.iter().filter(|check| !check.passed);
+    if found().any(is_cause) {
         return None;
     }
     let base = context.estimates_of(Stage::Base).next()?;
+    let part = found().filter_map(|check| check.explained);
+    let part = part.fold(0.0, f64::max);
+    let rest = (1.0 - part).max(0.0).sqrt();
     let (error, ratio) = (base.relative_error_percent, times_the_noise(context));
+    let is_named = found().any(|check| check.grade != Grade::Use);
+    let left = beyond(rest * error, noise_percent(context));
+    if is_named && left <= ORDINARY_PERCENT {
+        return None;
+    }
+    let why = match part {
+        0.0 => String::from("and nothing that was looked for explains it"),
+        _ => format!(
+            "and what was found explains {} % of its square",
+            significant(100.0 * part, 2)
+        ),
+    };
     let words = format!(
-        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, and nothing that was looked for explains it. Intervals tell chance alone, and what the parameters have taken up of the error is not in them. Look for filters that torques and positions have passed, for play, flexible parts and friction of another kind, or for encoders that are coarse for the motion",
+        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, {why}. Intervals tell chance alone, and what the parameters have taken up of the error is not in them. Look for filters that torques and positions have passed, for play, flexible parts and friction of another kind, or for encoders that are coarse for the motion",
         significant(error, 3),
         significant(ratio, 2)
     );
+    let ratio = rest * ratio;
     let check = Check::new(CheckKind::RelativeError, About::Fit, words)
         .measured(ratio, "times the noise")
         .against(
@@ -45,14 +66,20 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
     (ratio.is_finite() && ratio > SILENT).then(|| check.allowing(Grade::DoNotUse))
 }
 
-/// Whether a check that found something lowers the grade by itself, or says what most of the residual comes from. That
-/// residuals hang together explains none of them.
-fn explains(check: &Check) -> bool {
-    let is_cause = match check.explained {
-        Some(part) => part >= MOST,
-        None => check.kind != CheckKind::ResidualCorrelation,
-    };
-    !check.passed && (check.grade != Grade::Use || is_cause)
+/// Whether a check that found something forbids the use by itself, says what most of the residual comes from, or speaks
+/// of numbers that are wrong by an unknown part. That residuals hang together explains none of them.
+fn is_cause(check: &Check) -> bool {
+    match (check.grade, check.explained) {
+        (Grade::DoNotUse, _) => true,
+        (_, Some(part)) => part >= MOST,
+        (Grade::Use, None) => check.kind != CheckKind::ResidualCorrelation,
+        (Grade::UseListed, None) => check.about == About::Data,
+    }
+}
+
+/// What of an error is beyond noise.
+fn beyond(error: f64, noise: f64) -> f64 {
+    (error.powi(2) - noise.powi(2)).max(0.0).sqrt()
 }
 
 /// Looks at all estimates.
@@ -61,7 +88,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let of_estimate = |estimate: &Estimate| {
         let error = estimate.relative_error_percent;
         // Case 2 weighs the actuators otherwise; its noise is known no better than to a factor.
-        let beyond = (error * error - noise.powi(2).min(error * error)).sqrt();
+        let beyond = beyond(error, noise);
         let good = beyond <= LARGEST_PERCENT;
         let words = format!(
             "{} {} parameters leave {} % of the inputs unexplained; noise of the torques, told from neighbouring samples, is {} %{}",
