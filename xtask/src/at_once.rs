@@ -1,11 +1,12 @@
 //! All test binaries, one for each processor at a time: cargo runs one after the other, and some have few
-//! tests that take minutes, which leaves processors idle.
+//! tests that take minutes, which leaves processors idle. Each says how long it took.
 
 use crate::Failure;
 use crate::binaries::{Binary, binaries};
 use std::io::{self, Write as _};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
+use std::time::Instant;
 
 /// Builds all tests and runs them in the tier that the environment asks for. What a binary says is shown
 /// when it ends. Examples in the documentation are not run.
@@ -42,9 +43,11 @@ pub(crate) fn run() -> Result<(), Failure> {
 
 /// Runs a binary and shows what it says; whether it succeeds.
 fn shown(binary: &Binary) -> Result<bool, Failure> {
+    let start = Instant::now();
     let output = binary.command().output()?;
+    let seconds = start.elapsed().as_secs_f64();
     let mut out = io::stdout().lock();
-    writeln!(out, "\n     Running {}", binary.name)?;
+    writeln!(out, "\n     Running {} ({seconds:.0} s)", binary.name)?;
     out.write_all(&output.stdout)?;
     out.write_all(&output.stderr)?;
     Ok(output.status.success())
