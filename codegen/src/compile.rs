@@ -10,7 +10,7 @@ use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Progress, Request};
-use crate::selection::{self, Assembler, Search};
+use crate::selection::{self, Assembler, Forms, Search};
 use overact_core::Function;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -107,7 +107,7 @@ fn compiled(
     function: Function,
     from: MotionInput,
 ) -> Result<CompiledFunction, Underivable> {
-    let program = assembler.cheapest(function, from)?;
+    let program = Forms::new(*assembler, function, from).cheapest()?;
     let lanes = match request.side_by_side && request.float == Float::F64 {
         true => selection::beside(assembler, function, from, &program),
         false => None,

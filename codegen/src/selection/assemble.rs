@@ -1,6 +1,5 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
-use super::forms::Forms;
 use super::search::Search;
 use crate::cas::Arena;
 use crate::derivation::{JointsBy, MotionInput, Selection, Underivable, derive};
@@ -31,14 +30,6 @@ impl Assembler<'_> {
             .search
             .lower(&arena, self.mechanism, function, &derived)?;
         Ok(program)
-    }
-
-    /// The function in that of its equal forms that needs the fewest operations ([`Forms`]).
-    ///
-    /// # Errors
-    /// See [`Underivable`].
-    pub fn cheapest(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
-        Forms::new(*self, function, from).cheapest()
     }
 }
 

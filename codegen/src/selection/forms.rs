@@ -10,7 +10,7 @@ use crate::mechanism::Mechanism;
 use overact_core::{Columns, Function};
 
 /// The forms of one function.
-pub(super) struct Forms<'m> {
+pub(crate) struct Forms<'m> {
     mechanism: &'m Mechanism,
     /// The form that was chosen for the robot.
     selection: &'m Selection,
@@ -22,7 +22,7 @@ pub(super) struct Forms<'m> {
 
 impl<'m> Forms<'m> {
     /// Of a function.
-    pub(super) fn new(assembler: Assembler<'m>, function: Function, from: MotionInput) -> Self {
+    pub(crate) fn new(assembler: Assembler<'m>, function: Function, from: MotionInput) -> Self {
         Self {
             mechanism: assembler.mechanism,
             selection: assembler.selection,
@@ -40,7 +40,7 @@ impl Forms<'_> {
     ///
     /// # Errors
     /// See [`Underivable`].
-    pub(super) fn cheapest(&self) -> Result<Program, Underivable> {
+    pub(crate) fn cheapest(&self) -> Result<Program, Underivable> {
         let forms = self.forms()?;
         let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(self.function) / 100;

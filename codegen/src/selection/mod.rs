@@ -25,6 +25,7 @@ mod values;
 pub use assemble::Assembler;
 pub use base::BaseParameter;
 pub use columns::sample;
+pub(crate) use forms::Forms;
 pub use formulation::formulations;
 pub(crate) use lanes::beside;
 pub use search::Search;
