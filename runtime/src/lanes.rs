@@ -1,8 +1,8 @@
 //! Legs that are alike, side by side: as many numbers at once as a vector of the processor holds, one of each leg.
 //!
 //! A function that works on more legs than a vector has lanes does so in turns, the last of which begins as much earlier as
-//! is needed to be full: what it computes once more is the same. In builds that are not optimised, where
-//! vectors are slower than numbers, there is one lane.
+//! is needed to be full: what it computes once more is the same. Where there are fewer, the lanes that are left have the
+//! last leg once more. In builds that are not optimised, where vectors are slower than numbers, there is one lane.
 
 mod guards;
 mod number;
@@ -13,16 +13,26 @@ pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
 
 #[cfg(vectors)]
 mod vector {
-    #[cfg(target_feature = "avx")]
-    pub(super) type Vector = wide::f64x4;
+    #[cfg(target_feature = "avx512f")]
+    mod widest {
+        pub(in super::super) type Vector = wide::f64x8;
+        /// How many legs run side by side.
+        pub const WIDTH: usize = 8;
+    }
+    #[cfg(all(target_feature = "avx", not(target_feature = "avx512f")))]
+    mod widest {
+        pub(in super::super) type Vector = wide::f64x4;
+        /// How many legs run side by side.
+        pub const WIDTH: usize = 4;
+    }
     #[cfg(not(target_feature = "avx"))]
-    pub(super) type Vector = wide::f64x2;
-    /// How many legs run side by side.
-    #[cfg(target_feature = "avx")]
-    pub const WIDTH: usize = 4;
-    /// How many legs run side by side.
-    #[cfg(not(target_feature = "avx"))]
-    pub const WIDTH: usize = 2;
+    mod widest {
+        pub(in super::super) type Vector = wide::f64x2;
+        /// How many legs run side by side.
+        pub const WIDTH: usize = 2;
+    }
+    pub(super) use widest::Vector;
+    pub use widest::WIDTH;
 }
 #[cfg(not(vectors))]
 mod vector {
@@ -93,61 +103,87 @@ impl From<f64> for Lanes {
     }
 }
 
-/// The first leg of each turn, of `LEGS` of them: at least as many as a vector has lanes.
-#[inline(always)]
-pub fn places<const LEGS: usize>() -> impl Iterator<Item = usize> {
-    const { assert!(LEGS >= WIDTH, "fewer legs than lanes") };
-    (0..LEGS.div_ceil(WIDTH)).map(|turn| (turn * WIDTH).min(LEGS - WIDTH))
+/// A turn of a function of `LEGS` legs: which of them are in its lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Turn<const LEGS: usize>(usize);
+
+/// Which legs are in the lanes.
+pub trait Legs: Copy {
+    /// The leg in a lane.
+    fn leg(self, lane: usize) -> usize;
 }
 
-/// The numbers of the legs from `at` on, zero beyond the last.
-#[inline(always)]
-fn load(numbers: &[f64], at: usize) -> Lanes {
-    let found = numbers
-        .get(at..)
-        .and_then(|rest| rest.first_chunk::<WIDTH>());
-    found.map_or_else(|| Lanes::all(0.0), |numbers| Lanes::of(*numbers))
+impl<const LEGS: usize> Legs for Turn<LEGS> {
+    #[inline(always)]
+    fn leg(self, lane: usize) -> usize {
+        (self.0 + lane).min(LEGS - 1)
+    }
 }
 
-/// Constants of the legs from `at` on: each row has those of all legs.
+impl<const LEGS: usize> Turn<LEGS> {
+    /// How many lanes have a leg that is in none before.
+    const OWN: usize = if LEGS < WIDTH { LEGS } else { WIDTH };
+}
+
+/// The turns in which `LEGS` legs are gone through.
+#[inline(always)]
+pub fn places<const LEGS: usize>() -> impl Iterator<Item = Turn<LEGS>> {
+    const { assert!(LEGS > 0, "no legs") };
+    (0..LEGS.div_ceil(WIDTH)).map(|turn| Turn((turn * WIDTH).min(LEGS.saturating_sub(WIDTH))))
+}
+
+/// The numbers of the legs of a turn.
+#[inline(always)]
+fn load<const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<LEGS>) -> Lanes {
+    let rest = numbers.get(at.0..);
+    if let Some(numbers) = rest.and_then(|rest| rest.first_chunk::<WIDTH>()) {
+        return Lanes::of(*numbers);
+    }
+    let of_lane = |lane: usize| numbers.get(at.leg(lane)).copied();
+    Lanes::of(core::array::from_fn(|lane| of_lane(lane).unwrap_or(0.0)))
+}
+
+/// Constants of the legs of a turn: each row has those of all legs.
 #[inline(always)]
 #[must_use]
 pub fn constants<const COUNT: usize, const LEGS: usize>(
     of_legs: &[[f64; LEGS]; COUNT],
-    at: usize,
+    at: Turn<LEGS>,
 ) -> [Lanes; COUNT] {
     of_legs.each_ref().map(|of_leg| load(of_leg, at))
 }
 
-/// The elements of an array that belong to the legs from `at` on, `COUNT` to each leg.
+/// The elements of an array that belong to the legs of a turn, `COUNT` to each leg.
 #[inline(always)]
 #[must_use]
-pub fn elements<const COUNT: usize>(array: &[f64], at: usize) -> [Lanes; COUNT] {
+pub fn elements<const COUNT: usize>(array: &[f64], at: impl Legs) -> [Lanes; COUNT] {
     core::array::from_fn(|element| {
-        let of_lane = |lane: usize| array.get((at + lane) * COUNT + element).copied();
+        let of_lane = |lane: usize| array.get(at.leg(lane) * COUNT + element).copied();
         Lanes::of(core::array::from_fn(|lane| of_lane(lane).unwrap_or(0.0)))
     })
 }
 
-/// Writes a column of each of the legs from `at` on into a row: that of the first of all legs is `first`, and from one
+/// Writes a column of each of the legs of a turn into a row: that of the first of all legs is `first`, and from one
 /// leg's to the next one's there are `stride`.
 #[inline(always)]
-pub fn put<const COLUMNS: usize>(
+pub fn put<const COLUMNS: usize, const LEGS: usize>(
     row: &mut [f64; COLUMNS],
     [first, stride]: [usize; 2],
-    at: usize,
+    at: Turn<LEGS>,
     value: impl Into<Lanes>,
 ) {
     let numbers = value.into().to_array();
+    let own = || numbers.into_iter().take(Turn::<LEGS>::OWN);
     if stride == 1 {
-        let place = row.get_mut(first + at..);
-        if let Some(place) = place.and_then(|rest| rest.first_chunk_mut::<WIDTH>()) {
-            *place = numbers;
+        let place = row.get_mut(first + at.0..);
+        let place = place.and_then(|rest| rest.get_mut(..Turn::<LEGS>::OWN));
+        for (place, number) in place.into_iter().flatten().zip(own()) {
+            *place = number;
         }
         return;
     }
-    for (lane, number) in numbers.into_iter().enumerate() {
-        if let Some(place) = row.get_mut(first + (at + lane) * stride) {
+    for (lane, number) in own().enumerate() {
+        if let Some(place) = row.get_mut(first + (at.0 + lane) * stride) {
             *place = number;
         }
     }

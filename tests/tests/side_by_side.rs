@@ -2,7 +2,7 @@
 //! that fail the same one is told.
 //!
 //! Vectors are taken in optimised builds only, so a program of its own is built with optimisation, for the
-//! processor's smallest vectors and for those of AVX. Only the full tier does this: it takes a minute.
+//! processor's smallest vectors and for those of AVX and of AVX-512. Only the full tier does this: it takes a minute.
 
 use overact_codegen::{Effort, Request, compile_with, emission};
 use overact_tests::support::{Failure, description, repository};
@@ -40,6 +40,9 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     run(&folder, "")?;
     if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
         run(&folder, "-Ctarget-feature=+avx2")?;
+    }
+    if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx512f") {
+        run(&folder, "-Ctarget-feature=+avx512f")?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What [`guard`] checks, in every lane: of several legs that fail in the same the first is told.
 
-use super::{Lanes, load};
+use super::{Lanes, Legs as _, Turn, load};
 use crate::{Error, guard};
 
 /// The radicand of the legs' inverse kinematics must not be negative.
@@ -11,7 +11,7 @@ use crate::{Error, guard};
 pub fn reach<const LEGS: usize>(
     radicand: impl Into<Lanes>,
     legs: &[&'static str; LEGS],
-    at: usize,
+    at: Turn<LEGS>,
 ) -> Result<(), Error> {
     let radicands = radicand.into().to_array();
     if radicands.iter().all(|radicand| *radicand >= 0.0) {
@@ -31,7 +31,7 @@ pub fn leg<const LEGS: usize>(
     determinant: impl Into<Lanes>,
     home: &[f64; LEGS],
     legs: &[&'static str; LEGS],
-    at: usize,
+    at: Turn<LEGS>,
 ) -> Result<(), Error> {
     let determinants = determinant.into().to_array();
     let homes = load(home, at).to_array();
@@ -57,7 +57,7 @@ pub fn closed<const LEGS: usize>(
     gap: impl Into<Lanes>,
     within: f64,
     legs: &[&'static str; LEGS],
-    at: usize,
+    at: Turn<LEGS>,
 ) -> Result<(), Error> {
     let gaps = gap.into().to_array();
     if gaps.iter().all(|gap| gap.abs() <= within) {
@@ -71,13 +71,15 @@ pub fn closed<const LEGS: usize>(
 /// The error of the first lane that has one.
 #[cold]
 #[inline(never)]
-fn each(
+fn each<const LEGS: usize>(
     values: &[f64],
-    legs: &[&'static str],
-    at: usize,
+    legs: &[&'static str; LEGS],
+    at: Turn<LEGS>,
     check: &dyn Fn(f64, usize, &'static str) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let of_legs = values.iter().zip(legs.get(at..).unwrap_or_default());
-    let mut checked = of_legs.enumerate();
-    checked.try_for_each(|(lane, (value, leg))| check(*value, lane, leg))
+    let mut lanes = values.iter().enumerate();
+    lanes.try_for_each(|(lane, value)| {
+        let leg = legs.get(at.leg(lane)).copied().unwrap_or_default();
+        check(*value, lane, leg)
+    })
 }
