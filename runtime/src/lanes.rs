@@ -116,13 +116,10 @@ pub trait Legs: Copy {
 impl<const LEGS: usize> Legs for Turn<LEGS> {
     #[inline(always)]
     fn leg(self, lane: usize) -> usize {
-        (self.0 + lane).min(LEGS - 1)
+        let leg = self.0 + lane;
+        // Turns of more legs than lanes are full.
+        if LEGS < WIDTH { leg.min(LEGS - 1) } else { leg }
     }
-}
-
-impl<const LEGS: usize> Turn<LEGS> {
-    /// How many lanes have a leg that is in none before.
-    const OWN: usize = if LEGS < WIDTH { LEGS } else { WIDTH };
 }
 
 /// The turns in which `LEGS` legs are gone through.
@@ -173,16 +170,14 @@ pub fn put<const COLUMNS: usize, const LEGS: usize>(
     value: impl Into<Lanes>,
 ) {
     let numbers = value.into().to_array();
-    let own = || numbers.into_iter().take(Turn::<LEGS>::OWN);
-    if stride == 1 {
+    if stride == 1 && LEGS >= WIDTH {
         let place = row.get_mut(first + at.0..);
-        let place = place.and_then(|rest| rest.get_mut(..Turn::<LEGS>::OWN));
-        for (place, number) in place.into_iter().flatten().zip(own()) {
-            *place = number;
+        if let Some(place) = place.and_then(|rest| rest.first_chunk_mut::<WIDTH>()) {
+            *place = numbers;
         }
         return;
     }
-    for (lane, number) in own().enumerate() {
+    for (lane, number) in numbers.into_iter().take(LEGS).enumerate() {
         if let Some(place) = row.get_mut(first + (at.0 + lane) * stride) {
             *place = number;
         }
