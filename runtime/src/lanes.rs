@@ -132,9 +132,10 @@ pub fn places<const LEGS: usize>() -> impl Iterator<Item = Turn<LEGS>> {
 /// The numbers of the legs of a turn.
 #[inline(always)]
 fn load<const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<LEGS>) -> Lanes {
-    let rest = numbers.get(at.0..);
-    if let Some(numbers) = rest.and_then(|rest| rest.first_chunk::<WIDTH>()) {
-        return Lanes::of(*numbers);
+    if LEGS >= WIDTH {
+        let rest = numbers.get(at.0..);
+        let found = rest.and_then(|rest| rest.first_chunk::<WIDTH>());
+        return found.map_or_else(|| Lanes::all(0.0), |numbers| Lanes::of(*numbers));
     }
     let of_lane = |lane: usize| numbers.get(at.leg(lane)).copied();
     Lanes::of(core::array::from_fn(|lane| of_lane(lane).unwrap_or(0.0)))
@@ -177,8 +178,10 @@ pub fn put<const COLUMNS: usize, const LEGS: usize>(
         }
         return;
     }
-    for (lane, number) in numbers.into_iter().take(LEGS).enumerate() {
-        if let Some(place) = row.get_mut(first + (at.0 + lane) * stride) {
+    for (lane, number) in numbers.into_iter().enumerate() {
+        let is_own = LEGS >= WIDTH || lane < LEGS;
+        let place = row.get_mut(first + (at.0 + lane) * stride);
+        if let Some(place) = place.filter(|_| is_own) {
             *place = number;
         }
     }
