@@ -204,7 +204,8 @@ def counts(robot, cell):
     (own, missed), (peer, peers_missed) = cell.instructions
     ratio = f"{own / peer:.2f}"
     names = [cell.fastest(builds)[1] for builds in (DEFAULT, NATIVE, FAST)]
-    misses = f"{missed:.1f}", f"{peers_missed:.1f}"
+    # A difference of two runs: a little below zero where there is none.
+    misses = [f"{round(number, 1) + 0.0:.1f}" for number in (missed, peers_missed)]
     return [f"{ROBOTS[robot]}, {cell.title}", f"{own:.0f}", f"{peer:.0f}", ratio, *misses, *names]
 
 
