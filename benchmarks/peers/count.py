@@ -33,6 +33,8 @@ class Count:
         """Counts of overact's own function, as `overact inspect --json` prints them."""
         keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs"]
         counts = {key: function[key] for key in [*keys, "arc_tangents", "signs"]}
-        if beside := function.get("side_by_side"):
+        # What runs by default: other lanes than two take the processor's flags.
+        beside = function.get("side_by_side")
+        if beside and beside["lanes"] <= 2:
             counts["side_by_side"] = beside["once"] + beside["legs"] * beside["each"]
         return cls(**counts)

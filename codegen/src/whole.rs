@@ -51,6 +51,8 @@ pub struct SideBySide {
     pub each: usize,
     /// How many legs there are.
     pub legs: usize,
+    /// How many lanes there have to be. Of fewer the function's own program runs.
+    pub lanes: usize,
 }
 
 /// The iterations' names: those of the functions that have them.
@@ -114,7 +116,12 @@ impl RobotModel {
         whole.side_by_side = function.lanes.as_ref().map(|lanes| {
             let (once, each) = lanes.operations();
             let legs = lanes.legs.len();
-            SideBySide { once, each, legs }
+            SideBySide {
+                once,
+                each,
+                legs,
+                lanes: lanes.pays.least(),
+            }
         });
         let takes_pose = function.program.inputs.iter().any(|i| i.name == "pose");
         if takes_pose && !self.finds_pose(function) {

@@ -7,96 +7,27 @@
 mod guards;
 mod number;
 mod operators;
+mod vector;
 
+use core::marker::PhantomData;
 pub use guards::{closed, leg, reach};
 pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
+pub use vector::{Few, Many, Vector};
 
-#[cfg(vectors)]
-mod vector {
-    #[cfg(target_feature = "avx512f")]
-    mod widest {
-        pub(in super::super) type Vector = wide::f64x8;
-        /// How many legs run side by side.
-        pub const WIDTH: usize = 8;
-    }
-    #[cfg(all(target_feature = "avx", not(target_feature = "avx512f")))]
-    mod widest {
-        pub(in super::super) type Vector = wide::f64x4;
-        /// How many legs run side by side.
-        pub const WIDTH: usize = 4;
-    }
-    #[cfg(not(target_feature = "avx"))]
-    mod widest {
-        pub(in super::super) type Vector = wide::f64x2;
-        /// How many legs run side by side.
-        pub const WIDTH: usize = 2;
-    }
-    pub(super) use widest::Vector;
-    pub use widest::WIDTH;
-}
-#[cfg(not(vectors))]
-mod vector {
-    /// How many legs run side by side.
-    pub const WIDTH: usize = 1;
-    pub(super) type Vector = f64;
-}
-
-use vector::Vector;
-pub use vector::WIDTH;
-
-/// A number of each of [`WIDTH`] legs.
+/// A number of each of as many legs as a vector has lanes.
 #[derive(Debug, Clone, Copy)]
-pub struct Lanes(Vector);
+pub struct Lanes<V>(V);
 
-#[cfg(vectors)]
-impl Lanes {
-    /// The numbers of the legs.
-    #[inline(always)]
-    #[must_use]
-    pub fn of(numbers: [f64; WIDTH]) -> Self {
-        Self(Vector::new(numbers))
-    }
-
-    /// The number of each leg.
-    #[inline(always)]
-    #[must_use]
-    pub fn to_array(self) -> [f64; WIDTH] {
-        self.0.to_array()
-    }
-
+impl<V: Vector> Lanes<V> {
     /// The same number of every leg.
     #[inline(always)]
     #[must_use]
     pub fn all(number: f64) -> Self {
-        Self(Vector::splat(number))
+        Self(V::all(number))
     }
 }
 
-#[cfg(not(vectors))]
-impl Lanes {
-    /// The numbers of the legs.
-    #[inline(always)]
-    #[must_use]
-    pub const fn of(numbers: [f64; WIDTH]) -> Self {
-        Self(numbers[0])
-    }
-
-    /// The number of each leg.
-    #[inline(always)]
-    #[must_use]
-    pub const fn to_array(self) -> [f64; WIDTH] {
-        [self.0]
-    }
-
-    /// The same number of every leg.
-    #[inline(always)]
-    #[must_use]
-    pub const fn all(number: f64) -> Self {
-        Self(number)
-    }
-}
-
-impl From<f64> for Lanes {
+impl<V: Vector> From<f64> for Lanes<V> {
     #[inline(always)]
     fn from(number: f64) -> Self {
         Self::all(number)
@@ -105,84 +36,114 @@ impl From<f64> for Lanes {
 
 /// A turn of a function of `LEGS` legs: which of them are in its lanes.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn<const LEGS: usize>(usize);
+pub struct Turn<V, const LEGS: usize>(usize, PhantomData<V>);
 
-/// Which legs are in the lanes.
-pub trait Legs: Copy {
+impl<V: Vector, const LEGS: usize> Turn<V, LEGS> {
     /// The leg in a lane.
-    fn leg(self, lane: usize) -> usize;
-}
-
-impl<const LEGS: usize> Legs for Turn<LEGS> {
     #[inline(always)]
     fn leg(self, lane: usize) -> usize {
         let leg = self.0 + lane;
         // Turns of more legs than lanes are full.
-        if LEGS < WIDTH { leg.min(LEGS - 1) } else { leg }
+        if LEGS < V::WIDTH {
+            leg.min(LEGS - 1)
+        } else {
+            leg
+        }
     }
 }
 
-/// The turns in which `LEGS` legs are gone through.
+/// Whether four legs and more run side by side.
+pub const FOUR: bool = Few::WIDTH >= 4;
+
+/// The turns in which `LEGS` legs are gone through, as many at once as the processor's registers hold numbers.
 #[inline(always)]
-pub fn places<const LEGS: usize>() -> impl Iterator<Item = Turn<LEGS>> {
+pub fn places<const LEGS: usize>() -> impl Iterator<Item = Turn<Many, LEGS>> {
+    turns()
+}
+
+/// The turns in which `LEGS` legs are gone through, at most four at once: of so few a wider register would be half empty.
+#[inline(always)]
+pub fn places_of_few<const LEGS: usize>() -> impl Iterator<Item = Turn<Few, LEGS>> {
+    turns()
+}
+
+#[inline(always)]
+fn turns<V: Vector, const LEGS: usize>() -> impl Iterator<Item = Turn<V, LEGS>> {
     const { assert!(LEGS > 0, "no legs") };
-    (0..LEGS.div_ceil(WIDTH)).map(|turn| Turn((turn * WIDTH).min(LEGS.saturating_sub(WIDTH))))
+    let last = LEGS.saturating_sub(V::WIDTH);
+    (0..LEGS.div_ceil(V::WIDTH)).map(move |turn| Turn((turn * V::WIDTH).min(last), PhantomData))
 }
 
-/// The numbers of the legs of a turn.
-#[inline(always)]
-fn load<const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<LEGS>) -> Lanes {
-    if LEGS >= WIDTH {
-        let rest = numbers.get(at.0..);
-        let found = rest.and_then(|rest| rest.first_chunk::<WIDTH>());
-        return found.map_or_else(|| Lanes::all(0.0), |numbers| Lanes::of(*numbers));
-    }
-    let of_lane = |lane: usize| numbers.get(at.leg(lane)).copied();
-    Lanes::of(core::array::from_fn(|lane| of_lane(lane).unwrap_or(0.0)))
-}
-
-/// Constants of the legs of a turn: each row has those of all legs.
+/// The numbers of the legs of a turn, of a row that has those of all legs.
 #[inline(always)]
 #[must_use]
-pub fn constants<const COUNT: usize, const LEGS: usize>(
-    of_legs: &[[f64; LEGS]; COUNT],
-    at: Turn<LEGS>,
-) -> [Lanes; COUNT] {
-    of_legs.each_ref().map(|of_leg| load(of_leg, at))
+pub fn row<V: Vector, const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<V, LEGS>) -> Lanes<V> {
+    if LEGS >= V::WIDTH {
+        let found = numbers.get(at.0..).and_then(V::first_of);
+        return Lanes(found.unwrap_or_else(|| V::all(0.0)));
+    }
+    scattered(numbers, [0, 1], at)
 }
 
 /// The elements of an array that belong to the legs of a turn, `COUNT` to each leg.
 #[inline(always)]
 #[must_use]
-pub fn elements<const COUNT: usize>(array: &[f64], at: impl Legs) -> [Lanes; COUNT] {
-    core::array::from_fn(|element| {
-        let of_lane = |lane: usize| array.get(at.leg(lane) * COUNT + element).copied();
-        Lanes::of(core::array::from_fn(|lane| of_lane(lane).unwrap_or(0.0)))
-    })
+pub fn elements<const COUNT: usize, const LENGTH: usize, V: Vector, const LEGS: usize>(
+    array: &[f64; LENGTH],
+    at: Turn<V, LEGS>,
+) -> [Lanes<V>; COUNT] {
+    core::array::from_fn(|element| scattered(array, [element, COUNT], at))
+}
+
+/// An element of each of the legs of a turn, of an array that has the first leg's at `first` and those of the others at
+/// distances of `stride`.
+#[inline(always)]
+#[must_use]
+pub fn scattered<const LENGTH: usize, V: Vector, const LEGS: usize>(
+    array: &[f64; LENGTH],
+    [first, stride]: [usize; 2],
+    at: Turn<V, LEGS>,
+) -> Lanes<V> {
+    let of_lane = |lane: usize| array.get(first + at.leg(lane) * stride).copied();
+    Lanes(V::of(|lane| of_lane(lane).unwrap_or(0.0)))
+}
+
+/// The sum over all legs: halves are added until one number is left, whatever the number of lanes.
+#[inline(always)]
+#[must_use]
+pub fn sum<const LEGS: usize>(of_legs: &[f64; LEGS]) -> f64 {
+    let mut sums = *of_legs;
+    let mut length = LEGS;
+    while length > 1 {
+        let half = length.next_power_of_two() / 2;
+        let (kept, added) = sums.split_at_mut(half);
+        for (kept, added) in kept.iter_mut().zip(added.iter().take(length - half)) {
+            *kept += *added;
+        }
+        length = half;
+    }
+    sums.first().copied().unwrap_or(0.0)
 }
 
 /// Writes a column of each of the legs of a turn into a row: that of the first of all legs is `first`, and from one
 /// leg's to the next one's there are `stride`.
 #[inline(always)]
-pub fn put<const COLUMNS: usize, const LEGS: usize>(
+pub fn put<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     row: &mut [f64; COLUMNS],
     [first, stride]: [usize; 2],
-    at: Turn<LEGS>,
-    value: impl Into<Lanes>,
+    at: Turn<V, LEGS>,
+    value: impl Into<Lanes<V>>,
 ) {
-    let numbers = value.into().to_array();
-    if stride == 1 && LEGS >= WIDTH {
-        let place = row.get_mut(first + at.0..);
-        if let Some(place) = place.and_then(|rest| rest.first_chunk_mut::<WIDTH>()) {
-            *place = numbers;
+    let numbers = value.into().0;
+    if stride == 1 && LEGS >= V::WIDTH {
+        if let Some(place) = row.get_mut(first + at.0..) {
+            numbers.put(place);
         }
         return;
     }
-    for (lane, number) in numbers.into_iter().enumerate() {
-        let is_own = LEGS >= WIDTH || lane < LEGS;
-        let place = row.get_mut(first + (at.0 + lane) * stride);
-        if let Some(place) = place.filter(|_| is_own) {
-            *place = number;
+    for lane in 0..V::WIDTH.min(LEGS) {
+        if let Some(place) = row.get_mut(first + (at.0 + lane) * stride) {
+            *place = numbers.lane(lane);
         }
     }
 }

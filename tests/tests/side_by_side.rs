@@ -156,6 +156,6 @@ macro_rules! compare {
 fn main() {
     compare!(hexapod_lanes, hexapod_straight, Hexapod);
     compare!(octopod_lanes, octopod_straight, Octopod);
-    println!("agree in {} lanes", overact::lanes::WIDTH);
+    println!("agree in {} lanes", <overact::lanes::Many as overact::lanes::Vector>::WIDTH);
 }
 "#;

@@ -73,10 +73,14 @@ fn costs(cost: &WholeCost) -> String {
         let _ = write!(text, ", each_step = [{}]", steps.join(", "));
     }
     if let Some(SideBySide {
-        once, each, legs, ..
+        once,
+        each,
+        legs,
+        lanes,
+        ..
     }) = cost.side_by_side
     {
-        let _ = write!(text, ", side_by_side = [{once}, {each}, {legs}]");
+        let _ = write!(text, ", side_by_side = [{once}, {each}, {legs}, {lanes}]");
     }
     text
 }

@@ -13,7 +13,7 @@ use crate::cas::Expr;
 use overact_core::ActuatorGroup;
 
 /// The largest blocks of J that are solved by cofactors: from four rows on least squares take fewer operations.
-const COFACTORS: usize = 3;
+pub(super) const COFACTORS: usize = 3;
 
 /// What acts on the rates of actuated joints.
 #[derive(Debug, Default)]
@@ -136,7 +136,7 @@ impl<'a> Sheet<'a, '_> {
     }
 
     /// The inverse of a square J whose blocks are small.
-    fn by_cofactors(&self, jacobian: &Rows<'a>) -> Option<Inverse<'a>> {
+    pub(super) fn by_cofactors(&self, jacobian: &Rows<'a>) -> Option<Inverse<'a>> {
         if jacobian.len() != self.robot.mechanism.dof() {
             return None;
         }

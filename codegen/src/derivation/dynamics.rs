@@ -131,7 +131,8 @@ impl<'a> Sheet<'a, '_> {
             Columns::Base => Input::BaseParameters,
         };
         let values = self.input(input.name(), all.len());
-        all.into_iter().zip(values).collect()
+        let values = all.into_iter().zip(values);
+        values.filter(|(of, _)| self.owner.has(*of)).collect()
     }
 
     /// Γ¹ of given parameters.
@@ -145,7 +146,7 @@ impl<'a> Sheet<'a, '_> {
     }
 
     /// Γ¹ of given parameters, without what goes to `actuators`.
-    fn dynamics_of(
+    pub(super) fn dynamics_of(
         &mut self,
         of: Columns,
         twist: &[Expr<'a>],

@@ -57,11 +57,22 @@ pub fn derive<'a>(
     function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
-    let mut derived = if function == Function::PoseInClosedForm {
+    let derived = if function == Function::PoseInClosedForm {
         pose_in_closed_form(arena, mechanism)?
     } else {
-        on_sheet(arena, mechanism, selection, function, from)?
+        on_sheet(arena, mechanism, selection, (function, from), |sheet| {
+            sheet.rows(function)
+        })?
     };
+    with_divisors(arena, mechanism, derived)
+}
+
+/// Guards what the output divides by.
+pub(super) fn with_divisors<'a>(
+    arena: &'a Arena,
+    mechanism: &Mechanism,
+    mut derived: Derived<'a>,
+) -> Result<Derived<'a>, Underivable> {
     // Conditions on the pose are computed for themselves, and may divide by more than the output does.
     let of_pose = derived.guards.iter();
     let of_pose = of_pose.filter(|guard| matches!(guard.kind, GuardKind::Closed(_)));
@@ -78,13 +89,13 @@ pub fn derive<'a>(
     }
 }
 
-/// A function of the configuration.
-fn on_sheet<'a>(
+/// A function of the configuration, or what `rows` make of it.
+pub(super) fn on_sheet<'a, 's>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
-    selection: &Selection,
-    function: Function,
-    from: MotionInput,
+    selection: &'s Selection,
+    (function, from): (Function, MotionInput),
+    rows: impl FnOnce(&mut Sheet<'a, 's>) -> Result<Rows<'a>, Underivable>,
 ) -> Result<Derived<'a>, Underivable> {
     // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
     let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
@@ -94,7 +105,7 @@ fn on_sheet<'a>(
         false => &mechanism.still,
     };
     let mut sheet = Sheet::new(arena, mechanism, selection, from, still)?;
-    let rows = sheet.rows(function)?;
+    let rows = rows(&mut sheet)?;
     sheet.robot.give_names();
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();

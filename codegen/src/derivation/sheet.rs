@@ -4,12 +4,38 @@
 use super::elimination::Rows;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
+use super::parameter::BodyParameter;
 use super::robot::Robot;
 use super::selection::{JointsBy, Selection};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
 use crate::mechanism::Mechanism;
 use overact_core::ActuatorGroup;
+
+/// Whose parameters have values, in what is linear in them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// All of the robot's.
+    #[default]
+    Robot,
+    /// Those of this leg; all others are zero.
+    Leg(usize),
+    /// Those of the platform and the payload; all others are zero.
+    Platform,
+}
+
+impl Owner {
+    /// Whether a parameter has its value.
+    pub(super) fn has(self, parameter: BodyParameter) -> bool {
+        match (self, parameter) {
+            (Self::Robot, _) => true,
+            (Self::Leg(own), BodyParameter::Leg { leg, .. }) => own == leg,
+            (Self::Platform, BodyParameter::Leg { .. }) => false,
+            (Self::Leg(_), _) => false,
+            (Self::Platform, _) => true,
+        }
+    }
+}
 
 /// A function being derived.
 pub(super) struct Sheet<'a, 's> {
@@ -19,6 +45,8 @@ pub(super) struct Sheet<'a, 's> {
     /// The independent velocities that follow from the actuators'.
     pub(super) twist: Vec<Expr<'a>>,
     pub(super) inputs: Vec<(&'static str, usize)>,
+    /// Whose parameters have values.
+    pub(super) owner: Owner,
     pub(super) guards: Vec<Guard<'a>>,
 }
 
@@ -51,6 +79,7 @@ impl<'a, 's> Sheet<'a, 's> {
             selection,
             from,
             twist: Vec::new(),
+            owner: Owner::default(),
             guards: Vec::new(),
         })
     }

@@ -49,6 +49,8 @@ pub(super) struct Writer<'a> {
     float: Float,
     /// The module of the functions that are called.
     math: TokenStream,
+    /// What functions of two numbers are told besides: of which legs they are.
+    of_legs: TokenStream,
 }
 
 impl<'a> Writer<'a> {
@@ -62,6 +64,7 @@ impl<'a> Writer<'a> {
             inputs,
             float,
             math,
+            of_legs: TokenStream::new(),
         }
     }
 
@@ -71,6 +74,7 @@ impl<'a> Writer<'a> {
             inputs,
             float: Float::F64,
             math: quote!(::overact::lanes),
+            of_legs: quote!(, at),
         }
     }
 
@@ -173,12 +177,12 @@ impl<'a> Writer<'a> {
 
     fn call(&self, function: Call, operands: &[Expression]) -> TokenStream {
         let operands = operands.iter().map(|operand| self.tokens(operand));
-        let math = &self.math;
+        let (math, of_legs) = (&self.math, &self.of_legs);
         match function {
             Call::Sqrt => quote!(#math::sqrt(#(#operands),*)),
             Call::Sign => quote!(#math::sign(#(#operands),*)),
-            Call::Signed => quote!(#math::signed(#(#operands),*)),
-            Call::Atan2 => quote!(#math::atan2(#(#operands),*)),
+            Call::Signed => quote!(#math::signed(#(#operands),* #of_legs)),
+            Call::Atan2 => quote!(#math::atan2(#(#operands),* #of_legs)),
             Call::Sine => quote!(#math::sin_cos(#(#operands),*).0),
             Call::Cosine => quote!(#math::sin_cos(#(#operands),*).1),
         }

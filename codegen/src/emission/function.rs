@@ -4,7 +4,7 @@ use super::boundary::boundary;
 use super::expression;
 use super::layout::Sections;
 use crate::float::Float;
-use crate::lowering::Array;
+use crate::lowering::{Array, Pays};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
@@ -34,37 +34,51 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             names: Vec::new(),
         };
     }
-    if let (None, Some(lanes)) = (outline.twin, &function.lanes) {
-        let written = super::lanes::write(model, function, lanes);
-        let value = written.value;
-        let value = quote!(::core::result::Result::Ok(#value));
+    if let Some(twin) = outline.twin {
         return Item {
-            tokens: around(model, function, &outline, &written.statements, &value),
-            sections: written.sections,
-            names: written.names,
+            tokens: around(model, function, &outline, &TokenStream::new(), &call(twin)),
+            sections: Sections::none(&function.name),
+            names: Vec::new(),
         };
     }
-    let (mut sections, mut names) = (Vec::new(), Vec::new());
-    let (statements, value) = match outline.twin {
-        Some(twin) => (TokenStream::new(), call(twin)),
-        None => {
-            let program = &function.program;
-            // A word of Rust is no name that the derivation gives.
-            let body = Body::write(program, &Labels::new(model, function), &|_| false);
-            let written = expression::write(&body, &program.inputs, &program.output, model.float);
-            (sections, names) = (body.sections, body.names);
+    let lanes = function.lanes.as_ref();
+    let side_by_side = lanes.map(|lanes| (lanes.pays, super::lanes::write(model, function, lanes)));
+    let (before, starts, names) = match side_by_side {
+        Some((Pays::Always, written)) => {
             let value = written.value;
             let value = quote!(::core::result::Result::Ok(#value));
-            (written.statements, value)
+            return Item {
+                tokens: around(model, function, &outline, &written.statements, &value),
+                sections: written.sections,
+                names: written.names,
+            };
         }
+        Some((Pays::WithFour, written)) => {
+            let (statements, value) = (written.statements, written.value);
+            let before = quote! {
+                if ::overact::lanes::FOUR {
+                    #statements
+                    return ::core::result::Result::Ok(#value);
+                }
+            };
+            (before, written.sections.starts, written.names)
+        }
+        None => (TokenStream::new(), Vec::new(), Vec::new()),
     };
+    let program = &function.program;
+    // A word of Rust is no name that the derivation gives.
+    let body = Body::write(program, &Labels::new(model, function), &|_| false);
+    let written = expression::write(&body, &program.inputs, &program.output, model.float);
+    let (statements, value) = (written.statements, written.value);
+    let statements = quote!(#before #statements);
+    let value = quote!(::core::result::Result::Ok(#value));
     Item {
         tokens: around(model, function, &outline, &statements, &value),
         sections: Sections {
             function: function.name.clone(),
-            starts: sections,
+            starts: starts.into_iter().chain(body.sections).collect(),
         },
-        names,
+        names: names.into_iter().chain(body.names).collect(),
     }
 }
 

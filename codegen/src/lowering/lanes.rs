@@ -5,7 +5,7 @@
 //! [`Lanes::constants`]; what depends on these alone is a number itself, so it is computed here and not by the
 //! generated code.
 
-use super::program::{Array, Operand, Operation, Program, Step};
+use super::program::{Array, Entry, Operand, Program, Step};
 
 /// Where a column of the program stands among those of the function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +21,94 @@ pub enum Column {
     },
 }
 
+/// Whose the elements of an input are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Elements {
+    /// All legs share them.
+    Shared,
+    /// The legs' constants, [`Lanes::constants`].
+    Constants,
+    /// So many of each leg, one leg after the other.
+    InTurn(usize),
+    /// Of each leg these of another input's: that of the first leg, and how far it is from one leg's to the next one's.
+    Scattered {
+        /// Which input.
+        of: usize,
+        /// For each element the first leg's, and the distance.
+        places: Vec<[usize; 2]>,
+    },
+}
+
+/// What becomes of the entries of a program in lanes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Gathered {
+    /// They are columns of the function's output, row by row, that stand here in it.
+    Columns(Vec<Column>),
+    /// They are added up.
+    Sums(Sums),
+}
+
+/// Sums over the legs, and what follows from them.
+///
+/// The entries are what a leg adds to each sum, what all share adds to it, and then rows of numbers of a leg that are
+/// needed again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sums {
+    /// How many sums there are.
+    pub count: usize,
+    /// What follows from the sums, its first input: the function's output, or what the legs' rows are multiplied with.
+    pub program: Program,
+    /// The rows of each leg.
+    pub rows: LegRows,
+}
+
+/// What the rows of legs are needed for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LegRows {
+    /// There are none.
+    None,
+    /// So many of each leg. The function's output is each of them but for its last number times the program's output, and
+    /// that number added to it.
+    Times(usize),
+    /// So many of each leg, which are the program's second input: each number that is not zero, of all legs.
+    Given(usize),
+}
+
+impl Sums {
+    /// The numbers of each row.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.program.entries.len() + 1
+    }
+
+    /// The entries of a program that a leg adds, that all share, and of rows.
+    pub(crate) fn split<'e>(&self, entries: &'e [Entry]) -> [&'e [Entry]; 3] {
+        let (own, rest) = entries.split_at(self.count);
+        let (shared, rows) = rest.split_at(self.count);
+        [own, shared, rows]
+    }
+}
+
+/// Which lanes are faster than straight code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pays {
+    /// Two and more.
+    Always,
+    /// Four and more: with fewer the straight program runs, which stands beside.
+    WithFour,
+}
+
+impl Pays {
+    /// How many lanes there have to be.
+    #[must_use]
+    pub const fn least(self) -> usize {
+        match self {
+            Self::Always => 2,
+            Self::WithFour => 4,
+        }
+    }
+}
+
 /// A program of legs that are alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lanes {
@@ -28,16 +116,16 @@ pub struct Lanes {
     pub program: Program,
     /// The function's output.
     pub output: Array,
-    /// Where the columns of the program's output stand in the function's.
-    pub columns: Vec<Column>,
+    /// What becomes of the program's output.
+    pub gathered: Gathered,
+    /// Which lanes are faster than straight code.
+    pub pays: Pays,
     /// The legs' names.
     pub legs: Vec<String>,
-    /// Which of the inputs has the legs' constants.
-    pub array: usize,
-    /// The values of its elements in each leg.
+    /// Whose the elements of each input are.
+    pub inputs: Vec<Elements>,
+    /// The values of the legs' constants, leg by leg.
     pub constants: Vec<Vec<f64>>,
-    /// How many elements of each input belong to a leg; 0 for inputs that all share.
-    pub strides: Vec<usize>,
     /// For each guard of the program, what its value is at home in each leg.
     pub homes: Vec<Vec<f64>>,
 }
@@ -46,13 +134,23 @@ impl Lanes {
     /// For each step, whether it belongs to a leg.
     #[must_use]
     pub fn of_legs(&self) -> Vec<bool> {
-        of_legs(&self.program, &self.strides)
+        let mut found: Vec<bool> = Vec::with_capacity(self.program.steps.len());
+        for step in &self.program.steps {
+            let operands = step.operation.operands();
+            let own = operands.iter().any(|o| self.is_of_leg(*o, &found));
+            found.push(own);
+        }
+        found
     }
 
     /// Whether an operand belongs to a leg, where `of_legs` says which steps do.
     #[must_use]
     pub fn is_of_leg(&self, operand: Operand, of_legs: &[bool]) -> bool {
-        is_of_leg(operand, &self.strides, of_legs)
+        match operand {
+            Operand::Constant(_) => false,
+            Operand::Input { array, .. } => self.inputs[array] != Elements::Shared,
+            Operand::Step(at) => of_legs[at],
+        }
     }
 
     /// Operations that are done once, and those of each leg.
@@ -61,26 +159,25 @@ impl Lanes {
         let counted = self.program.steps.iter().zip(self.of_legs());
         let counted = counted.filter(|(step, _)| step.operation.is_counted());
         let (own, shared): (Vec<_>, Vec<_>) = counted.partition(|(_, own)| *own);
-        (shared.len(), own.len())
+        let (shared, own) = (shared.len(), own.len());
+        let Gathered::Sums(sums) = &self.gathered else {
+            return (shared, own);
+        };
+        let is_there = |entry: &&Entry| !entry.is_zero();
+        let [added, of_all, rows] = sums.split(&self.program.entries);
+        let [added, of_all] = [added, of_all].map(|part| part.iter().filter(is_there).count());
+        let products = match sums.rows {
+            LegRows::None | LegRows::Given(_) => 0,
+            LegRows::Times(of_leg) => {
+                // A number of a row is one operation if it is added, two if it is multiplied before.
+                let adding = rows.chunks(sums.width()).filter_map(<[Entry]>::last);
+                let less = adding.filter(is_there).count() + of_leg;
+                (rows.iter().filter(is_there).count() * 2).saturating_sub(less)
+            }
+        };
+        let once = sums.program.cost().operations() + of_all;
+        (shared + once, own + added + products)
     }
-}
-
-fn is_of_leg(operand: Operand, strides: &[usize], of_legs: &[bool]) -> bool {
-    match operand {
-        Operand::Constant(_) => false,
-        Operand::Input { array, .. } => strides[array] > 0,
-        Operand::Step(at) => of_legs[at],
-    }
-}
-
-fn of_legs(program: &Program, strides: &[usize]) -> Vec<bool> {
-    let mut found: Vec<bool> = Vec::with_capacity(program.steps.len());
-    for step in &program.steps {
-        let operands = step.operation.operands();
-        let own = operands.iter().any(|o| is_of_leg(*o, strides, &found));
-        found.push(own);
-    }
-    found
 }
 
 /// A program in which steps that depend on the elements of one input alone are elements of it themselves.
@@ -106,7 +203,7 @@ pub(crate) fn fold(program: &Program, array: usize) -> Folded {
         let place = if is_constant {
             Place::Constant(at)
         } else {
-            let operation = folding.operation(step.operation);
+            let operation = step.operation.map(|operand| folding.operand(operand));
             folding.steps.push(Step {
                 operation,
                 ..step.clone()
@@ -176,22 +273,32 @@ impl Folding {
             index,
         }
     }
+}
 
-    fn operation(&mut self, operation: Operation) -> Operation {
-        use Operation::{Add, Atan2, Cosine, Div, Mul, Neg, Sign, Signed, Sine, Sqrt, Sub};
-        let mut to = |operand| self.operand(operand);
-        match operation {
-            Add(a, b) => Add(to(a), to(b)),
-            Sub(a, b) => Sub(to(a), to(b)),
-            Mul(a, b) => Mul(to(a), to(b)),
-            Div(a, b) => Div(to(a), to(b)),
-            Signed(a, b) => Signed(to(a), to(b)),
-            Atan2(a, b) => Atan2(to(a), to(b)),
-            Neg(a) => Neg(to(a)),
-            Sqrt(a) => Sqrt(to(a)),
-            Sine(a) => Sine(to(a)),
-            Cosine(a) => Cosine(to(a)),
-            Sign(a) => Sign(to(a)),
-        }
-    }
+/// Puts elements of an input, those of the first of some legs, into an input of their own. `places` has of each element the
+/// distance to that of the next leg; none if all legs share it.
+pub(crate) fn scatter(program: &mut Program, of: usize, places: &[Option<usize>]) -> Elements {
+    let mut found: Vec<[usize; 2]> = Vec::new();
+    let own = program.inputs.len();
+    program.replace(|operand| {
+        let Operand::Input { array, index } = operand else {
+            return operand;
+        };
+        let stride = places.get(index).copied().flatten();
+        let Some(stride) = stride.filter(|_| array == of) else {
+            return operand;
+        };
+        let place = [index, stride];
+        let known = found.iter().position(|other| *other == place);
+        let index = known.unwrap_or_else(|| {
+            found.push(place);
+            found.len() - 1
+        });
+        Operand::Input { array: own, index }
+    });
+    program.inputs.push(Array {
+        name: format!("own_{}", program.inputs[of].name),
+        shape: vec![found.len()],
+    });
+    Elements::Scattered { of, places: found }
 }

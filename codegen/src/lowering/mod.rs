@@ -27,8 +27,8 @@ mod schedule;
 mod tests;
 
 pub use dag::rays::States;
-pub(crate) use lanes::fold;
-pub use lanes::{Column, Lanes};
+pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, Pays, Sums};
+pub(crate) use lanes::{fold, scatter};
 pub use limits::SearchLimits;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 

@@ -1,7 +1,7 @@
 //! What inputs and outputs of a function are called where a name is made of them.
 
 use super::dimensions::{Dimension, Dimensions};
-use crate::lowering::{Column, Lanes, Program};
+use crate::lowering::{Column, Gathered, Lanes, Program};
 use crate::mechanism::TwistCoordinate;
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
@@ -127,6 +127,10 @@ impl Labels {
     /// Those of a program in lanes, whose columns stand elsewhere: a leg's are called without the leg's number.
     #[must_use]
     pub(crate) fn in_lanes(mut self, lanes: &Lanes) -> Self {
+        let Gathered::Columns(columns) = &lanes.gathered else {
+            self.outputs.clear();
+            return self;
+        };
         let width = lanes.output.shape.last().copied().unwrap_or_default();
         let of_first = lanes.legs.first().map(|leg| format!("_{leg}_on_"));
         let label = |row: &[String], column: &Column| {
@@ -138,7 +142,7 @@ impl Labels {
             of_leg.map_or(label.clone(), |of_leg| label.replace(of_leg, "_leg_on_"))
         };
         let rows = self.outputs.chunks(width.max(1));
-        let labels = rows.flat_map(|row| lanes.columns.iter().map(|column| label(row, column)));
+        let labels = rows.flat_map(|row| columns.iter().map(|column| label(row, column)));
         self.outputs = labels.collect();
         self
     }

@@ -8,10 +8,22 @@ use crate::whole::{SideBySide, WholeCost};
 #[must_use]
 pub fn of_function(cost: &WholeCost) -> Vec<String> {
     let mut lines = vec![format!(" {}.", cost.once)];
-    if let Some(SideBySide { once, each, legs }) = cost.side_by_side {
-        lines.push(format!(
-            " That is the straight program, which interpreted robots and other languages have. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
-        ));
+    if let Some(SideBySide {
+        once,
+        each,
+        legs,
+        lanes,
+    }) = cost.side_by_side
+    {
+        let others = "interpreted robots and other languages have";
+        lines.push(match lanes {
+            0..=2 => format!(
+                " That is the straight program, which {others}. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+            ),
+            _ => format!(
+                " That is the straight program, which {others}, and builds for processors without vectors of {lanes} numbers. With these (`-C target-cpu=native`) the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+            ),
+        });
         lines.push(
             " In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.".to_owned(),
         );
@@ -60,9 +72,14 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
 
 /// `; in lanes of vectors 237 + 6 x 419`, of legs side by side.
 fn lanes(cost: &WholeCost) -> String {
-    let told = cost
-        .side_by_side
-        .map(|SideBySide { once, each, legs }| format!("; in lanes {once} + {legs} x {each}"));
+    let told = cost.side_by_side.map(|side| {
+        let (once, each, legs) = (side.once, side.each, side.legs);
+        let lanes = match side.lanes {
+            0..=2 => "in lanes".to_owned(),
+            least => format!("in {least} lanes"),
+        };
+        format!("; {lanes} {once} + {legs} x {each}")
+    });
     told.unwrap_or_default()
 }
 

@@ -1,6 +1,6 @@
 //! What [`guard`] checks, in every lane: of several legs that fail in the same the first is told.
 
-use super::{Lanes, Legs as _, Turn, load};
+use super::{Lanes, Turn, Vector, row};
 use crate::{Error, guard};
 
 /// The radicand of the legs' inverse kinematics must not be negative.
@@ -8,17 +8,17 @@ use crate::{Error, guard};
 /// # Errors
 /// [`Error::OutOfReach`]; also for NaN.
 #[inline(always)]
-pub fn reach<const LEGS: usize>(
-    radicand: impl Into<Lanes>,
+pub fn reach<V: Vector, const LEGS: usize>(
+    radicand: impl Into<Lanes<V>>,
     legs: &[&'static str; LEGS],
-    at: Turn<LEGS>,
+    at: Turn<V, LEGS>,
 ) -> Result<(), Error> {
-    let radicands = radicand.into().to_array();
-    if radicands.iter().all(|radicand| *radicand >= 0.0) {
+    let radicands = radicand.into().0;
+    if radicands.every(|radicand| radicand >= 0.0) {
         return Ok(());
     }
-    each(&radicands, legs, at, &|radicand, _, leg| {
-        guard::reach(radicand, leg)
+    each(legs, at, &|lane, leg| {
+        guard::reach(radicands.lane(lane), leg)
     })
 }
 
@@ -27,24 +27,23 @@ pub fn reach<const LEGS: usize>(
 /// # Errors
 /// [`Error::SingularLeg`]; also for NaN.
 #[inline(always)]
-pub fn leg<const LEGS: usize>(
-    determinant: impl Into<Lanes>,
+pub fn leg<V: Vector, const LEGS: usize>(
+    determinant: impl Into<Lanes<V>>,
     home: &[f64; LEGS],
     legs: &[&'static str; LEGS],
-    at: Turn<LEGS>,
+    at: Turn<V, LEGS>,
 ) -> Result<(), Error> {
-    let determinants = determinant.into().to_array();
-    let homes = load(home, at).to_array();
-    let mut pairs = determinants.iter().zip(&homes);
-    if pairs.all(|(determinant, home)| determinant.abs() > overact_core::SINGULAR * home) {
+    let (determinants, homes) = (determinant.into().0, row(home, at).0);
+    let mut lane = 0..;
+    let is_regular = |determinant: f64| {
+        let home = homes.lane(lane.next().unwrap_or_default());
+        determinant.abs() > overact_core::SINGULAR * home
+    };
+    if determinants.every(is_regular) {
         return Ok(());
     }
-    each(&determinants, legs, at, &|determinant, lane, leg| {
-        guard::leg(
-            determinant,
-            homes.get(lane).copied().unwrap_or_default(),
-            leg,
-        )
+    each(legs, at, &|lane, leg| {
+        guard::leg(determinants.lane(lane), homes.lane(lane), leg)
     })
 }
 
@@ -53,33 +52,31 @@ pub fn leg<const LEGS: usize>(
 /// # Errors
 /// [`Error::NotClosed`]; also for NaN.
 #[inline(always)]
-pub fn closed<const LEGS: usize>(
-    gap: impl Into<Lanes>,
+pub fn closed<V: Vector, const LEGS: usize>(
+    gap: impl Into<Lanes<V>>,
     within: f64,
     legs: &[&'static str; LEGS],
-    at: Turn<LEGS>,
+    at: Turn<V, LEGS>,
 ) -> Result<(), Error> {
-    let gaps = gap.into().to_array();
-    if gaps.iter().all(|gap| gap.abs() <= within) {
+    let gaps = gap.into().0;
+    if gaps.every(|gap| gap.abs() <= within) {
         return Ok(());
     }
-    each(&gaps, legs, at, &|gap, _, leg| {
-        guard::closed(gap, within, leg)
+    each(legs, at, &|lane, leg| {
+        guard::closed(gaps.lane(lane), within, leg)
     })
 }
 
 /// The error of the first lane that has one.
 #[cold]
 #[inline(never)]
-fn each<const LEGS: usize>(
-    values: &[f64],
+fn each<V: Vector, const LEGS: usize>(
     legs: &[&'static str; LEGS],
-    at: Turn<LEGS>,
-    check: &dyn Fn(f64, usize, &'static str) -> Result<(), Error>,
+    at: Turn<V, LEGS>,
+    check: &dyn Fn(usize, &'static str) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let mut lanes = values.iter().enumerate();
-    lanes.try_for_each(|(lane, value)| {
+    (0..V::WIDTH).try_for_each(|lane| {
         let leg = legs.get(at.leg(lane)).copied().unwrap_or_default();
-        check(*value, lane, leg)
+        check(lane, leg)
     })
 }

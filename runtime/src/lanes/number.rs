@@ -1,76 +1,56 @@
 //! Functions of lanes; each is that of [`math`] in every lane.
 
-use super::{Lanes, WIDTH};
+use super::{Lanes, Turn, Vector};
 use crate::math;
-
-#[cfg(not(vectors))]
-fn each(value: impl Into<Lanes>, f: impl Fn(f64) -> f64) -> Lanes {
-    Lanes::of(value.into().to_array().map(f))
-}
 
 /// Square root.
 #[inline(always)]
 #[must_use]
-pub fn sqrt(square: impl Into<Lanes>) -> Lanes {
-    #[cfg(vectors)]
-    {
-        Lanes(square.into().0.sqrt())
-    }
-    #[cfg(not(vectors))]
-    {
-        each(square, math::sqrt)
-    }
+pub fn sqrt<V: Vector>(square: Lanes<V>) -> Lanes<V> {
+    Lanes(square.0.root())
 }
 
 /// Sign of a velocity: -1, 0 or 1.
 #[inline(always)]
 #[must_use]
-pub fn sign(velocity: impl Into<Lanes>) -> Lanes {
-    #[cfg(vectors)]
-    {
-        let velocity = velocity.into();
-        let (zero, one) = (Lanes::all(0.0).0, Lanes::all(1.0).0);
-        let (positive, negative) = (velocity.0.simd_gt(zero), velocity.0.simd_lt(zero));
-        Lanes((positive & one) - (negative & one))
-    }
-    #[cfg(not(vectors))]
-    {
-        each(velocity, math::sign)
-    }
+pub fn sign<V: Vector>(velocity: Lanes<V>) -> Lanes<V> {
+    Lanes(velocity.0.sign())
 }
 
-/// A value with the sign of a velocity.
+/// A value with the sign of a velocity, of the legs of a turn.
 #[inline(always)]
 #[must_use]
-pub fn signed(value: impl Into<Lanes>, velocity: impl Into<Lanes>) -> Lanes {
-    value.into() * sign(velocity)
+pub fn signed<V: Vector, const LEGS: usize>(
+    value: impl Into<Lanes<V>>,
+    velocity: impl Into<Lanes<V>>,
+    _: Turn<V, LEGS>,
+) -> Lanes<V> {
+    value.into() * sign(velocity.into())
 }
 
-/// The angle of the direction (x, y).
+/// The angle of the direction (x, y), of the legs of a turn.
 #[inline(always)]
 #[must_use]
-pub fn atan2(y: impl Into<Lanes>, x: impl Into<Lanes>) -> Lanes {
-    let (y, x) = (y.into().to_array(), x.into().to_array());
-    Lanes::of(core::array::from_fn(|lane| math::atan2(y[lane], x[lane])))
+pub fn atan2<V: Vector, const LEGS: usize>(
+    y: impl Into<Lanes<V>>,
+    x: impl Into<Lanes<V>>,
+    _: Turn<V, LEGS>,
+) -> Lanes<V> {
+    let (y, x) = (y.into().0, x.into().0);
+    Lanes(V::of(|lane| math::atan2(y.lane(lane), x.lane(lane))))
 }
 
 /// Sine and cosine of an angle.
 #[inline(always)]
 #[must_use]
-pub fn sin_cos(angle: impl Into<Lanes>) -> (Lanes, Lanes) {
-    let [pair] = sin_cos_all([angle.into()]);
+pub fn sin_cos<V: Vector>(angle: Lanes<V>) -> (Lanes<V>, Lanes<V>) {
+    let [pair] = sin_cos_all([angle]);
     pair
 }
 
 /// Sines and cosines of angles.
 #[inline(always)]
 #[must_use]
-pub fn sin_cos_all<const N: usize>(angles: [Lanes; N]) -> [(Lanes, Lanes); N] {
-    angles.map(|angle| {
-        let pairs: [(f64, f64); WIDTH] = math::sin_cos_all(angle.to_array());
-        (
-            Lanes::of(pairs.map(|pair| pair.0)),
-            Lanes::of(pairs.map(|pair| pair.1)),
-        )
-    })
+pub fn sin_cos_all<V: Vector, const N: usize>(angles: [Lanes<V>; N]) -> [(Lanes<V>, Lanes<V>); N] {
+    V::sin_cos_all(angles.map(|angle| angle.0)).map(|(sine, cosine)| (Lanes(sine), Lanes(cosine)))
 }

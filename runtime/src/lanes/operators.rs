@@ -1,11 +1,11 @@
 //! Sums, products and quotients of lanes, and of lanes and numbers that all legs share.
 
-use super::Lanes;
+use super::{Lanes, Vector};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 macro_rules! operator {
     ($operator:ident, $name:ident) => {
-        impl $operator for Lanes {
+        impl<V: Vector> $operator for Lanes<V> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
@@ -13,7 +13,7 @@ macro_rules! operator {
             }
         }
 
-        impl $operator<f64> for Lanes {
+        impl<V: Vector> $operator<f64> for Lanes<V> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: f64) -> Self {
@@ -21,10 +21,10 @@ macro_rules! operator {
             }
         }
 
-        impl $operator<Lanes> for f64 {
-            type Output = Lanes;
+        impl<V: Vector> $operator<Lanes<V>> for f64 {
+            type Output = Lanes<V>;
             #[inline(always)]
-            fn $name(self, other: Lanes) -> Lanes {
+            fn $name(self, other: Lanes<V>) -> Lanes<V> {
                 Lanes::all(self).$name(other)
             }
         }
@@ -36,7 +36,7 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-impl Neg for Lanes {
+impl<V: Vector> Neg for Lanes<V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

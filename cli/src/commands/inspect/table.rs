@@ -161,8 +161,12 @@ fn functions(document: &Inspection) -> String {
 fn side_by_side(document: &Inspection) -> String {
     let told = document.functions.iter().filter_map(|function| {
         let cost = function.cost.side_by_side?;
+        let vectors = match cost.lanes {
+            0..=2 => String::new(),
+            least => format!(" with vectors of {least} numbers and more"),
+        };
         Some(format!(
-            "{} in Rust: {} legs side by side, {} operations once and {} of each leg.\n",
+            "{} in Rust{vectors}: {} legs side by side, {} operations once and {} of each leg.\n",
             function.function, cost.legs, cost.once, cost.each
         ))
     });

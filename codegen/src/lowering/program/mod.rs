@@ -53,6 +53,24 @@ impl Operation {
         )
     }
 
+    /// The same of other operands.
+    #[must_use]
+    pub(crate) fn map(self, mut to: impl FnMut(Operand) -> Operand) -> Self {
+        match self {
+            Self::Add(a, b) => Self::Add(to(a), to(b)),
+            Self::Sub(a, b) => Self::Sub(to(a), to(b)),
+            Self::Mul(a, b) => Self::Mul(to(a), to(b)),
+            Self::Div(a, b) => Self::Div(to(a), to(b)),
+            Self::Signed(a, b) => Self::Signed(to(a), to(b)),
+            Self::Atan2(a, b) => Self::Atan2(to(a), to(b)),
+            Self::Neg(a) => Self::Neg(to(a)),
+            Self::Sqrt(a) => Self::Sqrt(to(a)),
+            Self::Sine(a) => Self::Sine(to(a)),
+            Self::Cosine(a) => Self::Cosine(to(a)),
+            Self::Sign(a) => Self::Sign(to(a)),
+        }
+    }
+
     /// The operands.
     #[must_use]
     pub fn operands(&self) -> Vec<Operand> {
@@ -98,6 +116,12 @@ impl Entry {
             operand,
             negative: false,
         }
+    }
+
+    /// Whether it is zero whatever the inputs are.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        matches!(self.operand, Operand::Constant(zero) if zero == 0.0)
     }
 
     /// The value or its negative.
@@ -213,6 +237,28 @@ impl Program {
             Operand::Constant(value) => Some(value),
             _ => None,
         })
+    }
+
+    /// All operands, those of guards, too.
+    pub(crate) fn operands(&self) -> impl Iterator<Item = Operand> {
+        let of_steps = self.steps.iter().flat_map(|s| s.operation.operands());
+        let of_entries = self.entries.iter().map(|e| e.operand);
+        of_steps
+            .chain(of_entries)
+            .chain(self.guards.iter().map(|g| g.operand))
+    }
+
+    /// Puts other operands in the places of all.
+    pub(crate) fn replace(&mut self, mut by: impl FnMut(Operand) -> Operand) {
+        for step in &mut self.steps {
+            step.operation = step.operation.map(&mut by);
+        }
+        for entry in &mut self.entries {
+            entry.operand = by(entry.operand);
+        }
+        for guard in &mut self.guards {
+            guard.operand = by(guard.operand);
+        }
     }
 
     /// For each input, whether the program reads any of its elements.

@@ -1,0 +1,194 @@
+//! The body of a function whose legs run side by side in the lanes of vectors: what all share, then a loop over as
+//! many legs at once as a vector holds. Columns of legs go to their places in the output there ([`split`]); what is
+//! added up over all legs is followed by what the sums are needed for ([`sums`]).
+
+mod split;
+mod sums;
+
+use super::expression::{self, ident, number};
+use super::layout::Sections;
+use crate::float::Float;
+use crate::lowering::{Condition, Elements, Gathered, Lanes, Operand};
+use crate::model::{CompiledFunction, RobotModel};
+use crate::writing::body::Body;
+use crate::writing::labels::Labels;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+use split::Split;
+
+/// A function's body, and what its item tells of it.
+pub(super) struct Loop {
+    /// The statements.
+    pub(super) statements: TokenStream,
+    /// The output.
+    pub(super) value: TokenStream,
+    /// Where sections begin.
+    pub(super) sections: Sections,
+    /// All names that are assigned.
+    pub(super) names: Vec<String>,
+}
+
+/// Legs of which half of the widest registers would be empty.
+const FEW: usize = 4;
+
+/// Names that the loop has for itself.
+const RESERVED: [&str; 7] = ["at", "added", "own", "rows", "sums", "solution", "output"];
+
+/// The body of a function in lanes.
+pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lanes) -> Loop {
+    let kept = between(lanes);
+    let labels = Labels::new(model, function).in_lanes(lanes);
+    let is_reserved = |name: &str| RESERVED.contains(&name);
+    let body = Body::write_with(&lanes.program, &labels, &is_reserved, &|at| kept[at]);
+    let mut split = Split::new(lanes);
+    for statement in &body.statements {
+        split.statement(statement);
+    }
+    let constants = expression::constants(&body, Float::F64);
+    let (tables, arrays) = (tables(lanes), arrays(lanes));
+    let Parts {
+        before,
+        of_legs,
+        after,
+    } = match &lanes.gathered {
+        Gathered::Columns(columns) => split.columns(columns, &body.output),
+        Gathered::Sums(sums) => sums::parts(model, &split, sums, &body.output),
+    };
+    let places = places(lanes);
+    let (shared, own) = (&split.shared, &split.own);
+    let statements = quote! {
+        #constants
+        #(#shared)*
+        #before
+        #tables
+        for at in #places {
+            #arrays
+            #(#own)*
+            #of_legs
+        }
+        #after
+    };
+    let (own, shared): (Vec<_>, Vec<_>) = body
+        .sections
+        .into_iter()
+        .partition(|(name, _)| split.own_names.contains(name));
+    Loop {
+        statements,
+        value: quote!(output),
+        sections: Sections {
+            function: function.name.clone(),
+            starts: shared.into_iter().chain(own).collect(),
+        },
+        names: body.names,
+    }
+}
+
+/// The turns in which the legs are gone through.
+fn places(lanes: &Lanes) -> TokenStream {
+    let legs = lanes.legs.len();
+    let count = unsuffixed(legs);
+    match legs <= FEW {
+        true => quote!(::overact::lanes::places_of_few::<#count>()),
+        false => quote!(::overact::lanes::places::<#count>()),
+    }
+}
+
+/// What stands around the statements of the legs.
+struct Parts {
+    /// In front of the loop.
+    before: TokenStream,
+    /// At the end of each turn.
+    of_legs: TokenStream,
+    /// Behind the loop; `output` is known then.
+    after: TokenStream,
+}
+
+/// The steps that all legs share and that those of a leg need: each is computed once, in front of the loop.
+fn between(lanes: &Lanes) -> Vec<bool> {
+    let of_legs = lanes.of_legs();
+    let mut kept = vec![false; of_legs.len()];
+    let steps = lanes.program.steps.iter().zip(&of_legs);
+    let of_own = steps.filter(|(_, own)| **own);
+    let operands = of_own.flat_map(|(step, _)| step.operation.operands());
+    for operand in operands {
+        if let Operand::Step(at) = operand {
+            kept[at] |= !of_legs[at];
+        }
+    }
+    kept
+}
+
+/// The constants of the legs, their names, and the magnitudes at home of what is guarded.
+fn tables(lanes: &Lanes) -> TokenStream {
+    let count = unsuffixed(lanes.legs.len());
+    let numbers = |values: Vec<f64>| {
+        let numbers = values.into_iter().map(|value| number(value, Float::F64));
+        quote!([#(#numbers),*])
+    };
+    let elements = lanes.constants.first().map_or(0, Vec::len);
+    let of_element = |at| lanes.constants.iter().map(|leg| leg[at]).collect();
+    let constants = (0..elements).map(|at| numbers(of_element(at)));
+    let rows = unsuffixed(elements);
+    let legs = &lanes.legs;
+    let homes = lanes.program.guards.iter().zip(&lanes.homes);
+    let homes = homes.enumerate().filter_map(|(at, (guard, homes))| {
+        let name = home(at);
+        let homes = numbers(homes.clone());
+        matches!(guard.condition, Condition::Leg { .. })
+            .then(|| quote!(static #name: [::core::primitive::f64; #count] = #homes;))
+    });
+    quote! {
+        static OF_LEG: [[::core::primitive::f64; #count]; #rows] = [#(#constants),*];
+        static LEGS: [&::core::primitive::str; #count] = [#(#legs),*];
+        #(#homes)*
+    }
+}
+
+/// The arrays of which a leg has elements of its own.
+fn arrays(lanes: &Lanes) -> TokenStream {
+    let inputs = &lanes.program.inputs;
+    let used = lanes.program.used_inputs();
+    let arrays = lanes.inputs.iter().enumerate().map(|(at, elements)| {
+        let name = ident(&inputs[at].name);
+        match elements {
+            _ if !used[at] => TokenStream::new(),
+            Elements::Shared => TokenStream::new(),
+            Elements::Constants => {
+                let rows = rows(&quote!(OF_LEG), inputs[at].len());
+                quote!(let #name = #rows;)
+            }
+            Elements::InTurn(count) => {
+                let count = unsuffixed(*count);
+                quote!(let #name = ::overact::lanes::elements::<#count, _, _, _>(#name, at);)
+            }
+            Elements::Scattered { of, places } => {
+                let of = ident(&inputs[*of].name);
+                let places = places.iter().map(|place| {
+                    let [first, stride] = place.map(unsuffixed);
+                    quote!(::overact::lanes::scattered(#of, [#first, #stride], at))
+                });
+                quote!(let #name = [#(#places),*];)
+            }
+        }
+    });
+    quote!(#(#arrays)*)
+}
+
+/// The rows of a table for the legs of a turn, each written out: an array that is mapped is not inlined.
+fn rows(table: &TokenStream, count: usize) -> TokenStream {
+    let row = |at| {
+        let at = unsuffixed(at);
+        quote!(::overact::lanes::row(&#table[#at], at))
+    };
+    let rows = (0..count).map(row);
+    quote!([#(#rows),*])
+}
+
+fn unsuffixed(number: usize) -> Literal {
+    Literal::usize_unsuffixed(number)
+}
+
+/// The table of a guard's magnitudes at home.
+fn home(guard: usize) -> proc_macro2::Ident {
+    ident(&format!("HOME_{guard}"))
+}

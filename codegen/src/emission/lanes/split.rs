@@ -1,0 +1,152 @@
+//! Statements of a program in lanes: those that all legs share, and those of a leg.
+
+use super::{Parts, home, unsuffixed};
+use crate::emission::expression::{Writer, number};
+use crate::float::Float;
+use crate::lowering::{Column, Condition, Elements, Lanes};
+use crate::writing::statement::{Expression, Pair, Statement};
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::collections::HashSet;
+
+/// Statements, those that all legs share and those of a leg.
+pub(super) struct Split<'a> {
+    pub(super) lanes: &'a Lanes,
+    pub(super) shared_writer: Writer<'a>,
+    pub(super) own_writer: Writer<'a>,
+    /// What is assigned of a leg.
+    pub(super) own_names: HashSet<String>,
+    pub(super) shared: Vec<TokenStream>,
+    pub(super) own: Vec<TokenStream>,
+    /// How many guards were written.
+    guards: usize,
+}
+
+impl<'a> Split<'a> {
+    /// Nothing yet.
+    pub(super) fn new(lanes: &'a Lanes) -> Self {
+        Self {
+            lanes,
+            shared_writer: Writer::new(&lanes.program.inputs, Float::F64),
+            own_writer: Writer::of_lanes(&lanes.program.inputs),
+            own_names: HashSet::new(),
+            shared: Vec::new(),
+            own: Vec::new(),
+            guards: 0,
+        }
+    }
+
+    pub(super) fn statement(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Assign { name, value } => {
+                let own = self.is_own(value);
+                self.push(own, statement);
+                if own {
+                    self.own_names.insert(name.clone());
+                }
+            }
+            Statement::Pair(pair) => self.pairs(std::slice::from_ref(pair)),
+            Statement::Pairs(pairs) => self.pairs(pairs),
+            Statement::Guard { value, condition } => {
+                let at = self.guards;
+                self.guards += 1;
+                if self.is_own(value) {
+                    let guard = self.guard(at, value, condition);
+                    self.own.push(guard);
+                } else {
+                    self.push(false, statement);
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, own: bool, statement: &Statement) {
+        if own {
+            self.own.push(self.own_writer.statement(statement));
+        } else {
+            self.shared.push(self.shared_writer.statement(statement));
+        }
+    }
+
+    fn pairs(&mut self, pairs: &[Pair]) {
+        let (own, shared): (Vec<Pair>, Vec<Pair>) = pairs
+            .iter()
+            .cloned()
+            .partition(|pair| self.is_own(&pair.angle));
+        let names = own.iter().flat_map(|pair| [&pair.sine, &pair.cosine]);
+        let names: Vec<String> = names.flatten().cloned().collect();
+        self.own_names.extend(names);
+        for (is_own, pairs) in [(false, shared), (true, own)] {
+            if !pairs.is_empty() {
+                self.push(is_own, &Statement::Pairs(pairs));
+            }
+        }
+    }
+
+    /// A condition in all lanes; of several legs the first is told.
+    fn guard(&self, at: usize, value: &Expression, condition: &Condition) -> TokenStream {
+        let value = self.own_writer.tokens(value);
+        match condition {
+            Condition::Reach { .. } => quote!(::overact::lanes::reach(#value, &LEGS, at)?;),
+            Condition::Closed { within, .. } => {
+                let within = number(*within, Float::F64);
+                quote!(::overact::lanes::closed(#value, #within, &LEGS, at)?;)
+            }
+            _ => {
+                let home = home(at);
+                quote!(::overact::lanes::leg(#value, &#home, &LEGS, at)?;)
+            }
+        }
+    }
+
+    /// Whether an expression belongs to a leg.
+    fn is_own(&self, expression: &Expression) -> bool {
+        match expression {
+            Expression::Number(_) | Expression::Constant { .. } | Expression::Broken(_) => false,
+            Expression::Input { array, .. } => self.lanes.inputs[*array] != Elements::Shared,
+            Expression::Value(name) => self.own_names.contains(name),
+            Expression::Negative(inner) => self.is_own(inner),
+            Expression::Binary(_, operands) => operands.iter().any(|o| self.is_own(o)),
+            Expression::Call(_, operands) => operands.iter().any(|o| self.is_own(o)),
+        }
+    }
+
+    /// Columns of the output in their places.
+    pub(super) fn columns(&self, places: &[Column], values: &[Expression]) -> Parts {
+        let (mut of_all, mut of_legs) = (Vec::new(), Vec::new());
+        for (at, value) in values.iter().enumerate() {
+            if is_zero(value) {
+                continue;
+            }
+            let row = unsuffixed(at / places.len());
+            match places[at % places.len()] {
+                Column::Shared(column) => {
+                    let (column, value) = (unsuffixed(column), self.shared_writer.tokens(value));
+                    of_all.push(quote!(output[#row][#column] = #value;));
+                }
+                Column::OfLegs { first, stride } => {
+                    let (first, stride) = (unsuffixed(first), unsuffixed(stride));
+                    let value = self.own_writer.tokens(value);
+                    of_legs.push(quote! {
+                        ::overact::lanes::put(&mut output[#row], [#first, #stride], at, #value);
+                    });
+                }
+            }
+        }
+        let shape = &self.lanes.output.shape;
+        let (rows, columns) = (unsuffixed(shape[0]), unsuffixed(shape[1]));
+        Parts {
+            before: quote! {
+                let mut output = [[0.0; #columns]; #rows];
+                #(#of_all)*
+            },
+            of_legs: quote!(#(#of_legs)*),
+            after: TokenStream::new(),
+        }
+    }
+}
+
+/// Whether a value is zero whatever the inputs are.
+pub(super) fn is_zero(value: &Expression) -> bool {
+    matches!(value, Expression::Number(zero) if *zero == 0.0)
+}

@@ -1,0 +1,135 @@
+//! What is added up over the legs, and what the sums are needed for.
+//!
+//! What a leg adds is kept for all legs until the loop is over, and added up then in an order that is the same however many
+//! lanes there are.
+
+use super::split::{Split, is_zero};
+use super::{Parts, places, rows as rows_of, unsuffixed};
+use crate::emission::expression;
+use crate::float::Float;
+use crate::lowering::{LegRows, Sums};
+use crate::model::RobotModel;
+use crate::writing::body::Body;
+use crate::writing::labels::Labels;
+use crate::writing::statement::Expression;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// What stands around the statements of the legs of a function of sums.
+pub(super) fn parts(
+    model: &RobotModel,
+    split: &Split<'_>,
+    sums: &Sums,
+    values: &[Expression],
+) -> Parts {
+    let count = unsuffixed(split.lanes.legs.len());
+    let (added, rest) = values.split_at(sums.count);
+    let (shared, rows) = rest.split_at(sums.count);
+    let (adding, added) = kept(split, "added", added);
+    let (owning, own) = kept(split, "own", rows);
+    let of_sum = shared.iter().zip(&added).map(|(shared, added)| {
+        let shared = (!is_zero(shared)).then(|| split.shared_writer.tokens(shared));
+        let added = added
+            .as_ref()
+            .map(|added| quote!(::overact::lanes::sum(&#added)));
+        let parts: Vec<TokenStream> = shared.into_iter().chain(added).collect();
+        match parts.is_empty() {
+            true => quote!(0.0),
+            false => quote!(#(#parts)+*),
+        }
+    });
+    let follows = following(model, split, sums);
+    let after = match sums.rows {
+        LegRows::None => quote!(let output = #follows;),
+        LegRows::Given(_) => quote! {
+            let rows = own.as_flattened();
+            let output = #follows;
+        },
+        LegRows::Times(rows) => {
+            let width = sums.width();
+            let torques = own.chunks(width).enumerate().map(|(row, own)| {
+                let value = along(own);
+                let (first, stride) = (unsuffixed(row), unsuffixed(rows));
+                quote!(::overact::lanes::put(&mut output, [#first, #stride], at, #value);)
+            });
+            let loaded = rows_of(&quote!(own), own.iter().flatten().count());
+            let places = places(split.lanes);
+            let length = unsuffixed(split.lanes.output.len());
+            quote! {
+                let solution = #follows;
+                let mut output = [0.0; #length];
+                for at in #places {
+                    let own = #loaded;
+                    #(#torques)*
+                }
+            }
+        }
+    };
+    let tables = [("added", &added), ("own", &own)].map(|(name, places)| {
+        let length = places.iter().flatten().count();
+        let (name, length) = (expression::ident(name), unsuffixed(length));
+        quote!(let mut #name = [[0.0; #count]; #length];)
+    });
+    let tables = &tables[..if sums.rows == LegRows::None { 1 } else { 2 }];
+    Parts {
+        before: quote!(#(#tables)*),
+        of_legs: quote!(#adding #owning),
+        after: quote! {
+            let sums = [#(#of_sum),*];
+            #after
+        },
+    }
+}
+
+/// Keeps what is not zero in a table that has a row for each number and a column for each leg; and where each number
+/// stands.
+fn kept(
+    split: &Split<'_>,
+    table: &str,
+    values: &[Expression],
+) -> (TokenStream, Vec<Option<TokenStream>>) {
+    let table = expression::ident(table);
+    let (mut statements, mut places) = (Vec::new(), Vec::new());
+    for value in values {
+        if is_zero(value) {
+            places.push(None);
+            continue;
+        }
+        let (at, value) = (unsuffixed(statements.len()), split.own_writer.tokens(value));
+        statements.push(quote!(::overact::lanes::put(&mut #table[#at], [0, 1], at, #value);));
+        places.push(Some(quote!(#table[#at])));
+    }
+    (quote!(#(#statements)*), places)
+}
+
+/// What follows from the sums, as a block.
+fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream {
+    let program = &sums.program;
+    let body = Body::write(program, &Labels::of_robot(model), &|_| false);
+    let output = match sums.rows {
+        LegRows::Times(_) => &program.output,
+        _ => &split.lanes.output,
+    };
+    let written = expression::write(&body, &program.inputs, output, Float::F64);
+    let (statements, value) = (written.statements, written.value);
+    match statements.is_empty() {
+        true => value,
+        false => quote!({ #statements #value }),
+    }
+}
+
+/// A row times the solution, and the row's last number.
+fn along(row: &[Option<TokenStream>]) -> TokenStream {
+    let Some((last, row)) = row.split_last() else {
+        return quote!(0.0);
+    };
+    let products = row.iter().enumerate().filter_map(|(at, number)| {
+        let (at, number) = (unsuffixed(at), number.as_ref()?);
+        Some(quote!(#number * solution[#at]))
+    });
+    let parts: Vec<TokenStream> = products.chain(last.clone()).collect();
+    match parts.is_empty() {
+        true => quote!(0.0),
+        false => quote!(#(#parts)+*),
+    }
+}

@@ -1,0 +1,177 @@
+//! What a program in lanes is made from, and the steps that all of them take: lowering, constants, whose each input is.
+
+use super::columns::kept_columns;
+use super::outcome::{at_home, of_leg, value_of};
+use super::template::{ARRAY, Template};
+use crate::cas::{Arena, InputElement};
+use crate::derivation::{BodyParameter, Derived, MotionInput, Selection};
+use crate::lowering::{
+    Column, Condition, Elements, Gathered, Lanes, Operand, Pays, Program, fold, scatter,
+};
+use crate::selection::assemble::Assembler;
+use overact_core::{Columns, Function, Input};
+
+/// What a program in lanes is made from.
+pub(super) struct Draft<'m> {
+    pub(super) assembler: &'m Assembler<'m>,
+    pub(super) template: &'m Template,
+    pub(super) function: Function,
+    pub(super) from: MotionInput,
+    /// The function with all legs in a row.
+    pub(super) straight: &'m Program,
+}
+
+/// A program of the template's first leg.
+pub(super) struct Lowered {
+    pub(super) program: Program,
+    /// Which input has the numbers of a leg.
+    array: usize,
+}
+
+impl Draft<'_> {
+    /// The robot's form, without columns of legs that are had from those of others.
+    pub(super) fn selection(&self) -> Selection {
+        Selection {
+            combined: Vec::new(),
+            ..self.assembler.selection.clone()
+        }
+    }
+
+    /// The program of what is derived of the template.
+    pub(super) fn lowered<'a>(
+        &self,
+        arena: &'a Arena,
+        mut derived: Derived<'a>,
+    ) -> Option<Lowered> {
+        let first = &self.template.mechanism.legs[0].name;
+        for guards in [&mut derived.guards, &mut derived.divisors] {
+            guards.retain(|guard| guard.leg.is_empty() || guard.leg == *first);
+        }
+        let array = derived.inputs.len();
+        derived.inputs.push((ARRAY, self.template.len()));
+        let numbers = self.template.values(0);
+        let standing = |element: InputElement| match element.array {
+            ARRAY => numbers.get(element.index).copied(),
+            _ => None,
+        };
+        let (search, mechanism) = (self.assembler.search, self.assembler.mechanism);
+        let program = search.lower_with(arena, mechanism, self.function, &derived, &standing);
+        let program = program.ok()?;
+        Some(Lowered { program, array })
+    }
+
+    /// The program in lanes: what depends on the numbers of a leg alone is a number of it.
+    pub(super) fn lanes(&self, lowered: Lowered, gathered: Gathered) -> Option<Lanes> {
+        let Lowered { program, array } = lowered;
+        let mechanism = self.assembler.mechanism;
+        let folded = fold(&program, array);
+        let of_leg = |leg| {
+            let given = |name: &str| (name == ARRAY).then(|| self.template.values(leg));
+            value_of(&program, &folded.elements, &given)
+        };
+        let constants: Option<Vec<Vec<f64>>> = (0..mechanism.legs.len()).map(of_leg).collect();
+        let mut program = folded.program;
+        name_guards(&mut program, &mechanism.legs[0].name);
+        let inputs = self.elements(&mut program, array)?;
+        let mut lanes = Lanes {
+            program,
+            output: self.straight.output.clone(),
+            gathered,
+            pays: Pays::Always,
+            legs: mechanism.legs.iter().map(|l| l.name.clone()).collect(),
+            inputs,
+            constants: constants?,
+            homes: Vec::new(),
+        };
+        lanes.homes = self.homes(&lanes)?;
+        Some(lanes)
+    }
+
+    /// Whose the elements of each input are. None if the program reads what belongs to another leg than the first.
+    fn elements(&self, program: &mut Program, array: usize) -> Option<Vec<Elements>> {
+        let mechanism = self.assembler.mechanism;
+        let legs = mechanism.legs.len();
+        let joints = mechanism.legs[0].independent().count();
+        let of = |at: usize, name: &str| match name {
+            _ if at == array => Elements::Constants,
+            "joints" => Elements::InTurn(joints),
+            "torques" => Elements::InTurn(mechanism.actuated().len() / legs),
+            _ => Elements::Shared,
+        };
+        let inputs = program.inputs.iter().enumerate();
+        let mut inputs: Vec<Elements> = inputs.map(|(at, input)| of(at, &input.name)).collect();
+        for columns in [Columns::Standard, Columns::Base] {
+            let parameters = self.parameters(columns);
+            let name = input_of(columns).name();
+            let Some(at) = program.inputs.iter().position(|input| input.name == name) else {
+                continue;
+            };
+            let (kept, columns) = kept_columns(&parameters, legs)?;
+            let mut places = vec![None; parameters.len()];
+            for (at, column) in kept.into_iter().zip(columns) {
+                if let Column::OfLegs { stride, .. } = column {
+                    places[at] = Some(stride);
+                }
+            }
+            inputs.push(scatter(program, at, &places));
+            let is_shared = |index: usize| !matches!(parameters[index], BodyParameter::Leg { .. });
+            let mut operands = program.operands();
+            if !operands.all(|o| !matches!(o, Operand::Input { array, index } if array == at && !is_shared(index))) {
+                return None;
+            }
+        }
+        let is_own = |operand| match operand {
+            Operand::Input { array, index } => match inputs[array] {
+                Elements::InTurn(count) => index < count,
+                _ => true,
+            },
+            _ => true,
+        };
+        program.operands().all(is_own).then_some(inputs)
+    }
+
+    /// What the elements of a function's input of parameters are.
+    fn parameters(&self, columns: Columns) -> Vec<BodyParameter> {
+        let selection = self.assembler.selection;
+        let chosen = match columns {
+            Columns::Standard => &selection.standard,
+            Columns::Base => &selection.base,
+        };
+        [&chosen[..], &selection.payload].concat()
+    }
+
+    /// The magnitudes at home of what is guarded, in each leg.
+    fn homes(&self, lanes: &Lanes) -> Option<Vec<Vec<f64>>> {
+        let guards: Vec<Operand> = lanes.program.guards.iter().map(|g| g.operand).collect();
+        let given = |name: &str| at_home(self.assembler, name);
+        let of_legs: Option<Vec<Vec<f64>>> = (0..lanes.legs.len())
+            .map(|leg| {
+                value_of(&lanes.program, &guards, &|name| {
+                    of_leg(lanes, leg, name, &given)
+                })
+            })
+            .collect();
+        let of_legs = of_legs?;
+        let of_guard = |guard: usize| of_legs.iter().map(|values| values[guard].abs()).collect();
+        Some((0..guards.len()).map(of_guard).collect())
+    }
+}
+
+const fn input_of(columns: Columns) -> Input {
+    match columns {
+        Columns::Standard => Input::Parameters,
+        Columns::Base => Input::BaseParameters,
+    }
+}
+
+/// What all legs share fails in the first one first. In which leg another guard fails is known when it does.
+fn name_guards(program: &mut Program, first: &str) {
+    for guard in &mut program.guards {
+        if let Condition::Reach { leg }
+        | Condition::Leg { leg, .. }
+        | Condition::Closed { leg, .. } = &mut guard.condition
+        {
+            first.clone_into(leg);
+        }
+    }
+}

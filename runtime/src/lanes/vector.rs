@@ -1,0 +1,182 @@
+//! Vectors of numbers, by how many they hold.
+
+use crate::math;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// As many numbers as a register holds, one of each leg.
+pub trait Vector:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// How many they are.
+    const WIDTH: usize;
+
+    /// The same number in every lane.
+    fn all(number: f64) -> Self;
+
+    /// The number of each lane.
+    fn of(number: impl FnMut(usize) -> f64) -> Self;
+
+    /// The first numbers of some, if there are enough.
+    fn first_of(numbers: &[f64]) -> Option<Self>;
+
+    /// Puts all numbers in front of some, if there is room for them.
+    fn put(self, numbers: &mut [f64]);
+
+    /// The number of a lane.
+    fn lane(&self, lane: usize) -> f64;
+
+    /// Whether something holds in all lanes.
+    fn every(&self, holds: impl FnMut(f64) -> bool) -> bool;
+
+    /// The square roots.
+    #[must_use]
+    fn root(self) -> Self;
+
+    /// -1, 0 or 1 in each lane.
+    #[must_use]
+    fn sign(self) -> Self;
+
+    /// Sines and cosines of angles.
+    fn sin_cos_all<const N: usize>(angles: [Self; N]) -> [(Self, Self); N];
+}
+
+/// One number, in builds without vectors and in those that are not optimised.
+impl Vector for f64 {
+    const WIDTH: usize = 1;
+
+    #[inline(always)]
+    fn all(number: f64) -> Self {
+        number
+    }
+
+    #[inline(always)]
+    fn of(mut number: impl FnMut(usize) -> f64) -> Self {
+        number(0)
+    }
+
+    #[inline(always)]
+    fn first_of(numbers: &[f64]) -> Option<Self> {
+        numbers.first().copied()
+    }
+
+    #[inline(always)]
+    fn put(self, numbers: &mut [f64]) {
+        if let Some(first) = numbers.first_mut() {
+            *first = self;
+        }
+    }
+
+    #[inline(always)]
+    fn lane(&self, _: usize) -> f64 {
+        *self
+    }
+
+    #[inline(always)]
+    fn every(&self, mut holds: impl FnMut(f64) -> bool) -> bool {
+        holds(*self)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        math::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Self {
+        math::sign(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_all<const N: usize>(angles: [Self; N]) -> [(Self, Self); N] {
+        math::sin_cos_all(angles)
+    }
+}
+
+#[cfg(vectors)]
+macro_rules! vector {
+    ($vector:ident, $width:literal) => {
+        impl Vector for wide::$vector {
+            const WIDTH: usize = $width;
+
+            #[inline(always)]
+            fn all(number: f64) -> Self {
+                Self::splat(number)
+            }
+
+            #[inline(always)]
+            fn of(number: impl FnMut(usize) -> f64) -> Self {
+                Self::new(core::array::from_fn(number))
+            }
+
+            #[inline(always)]
+            fn first_of(numbers: &[f64]) -> Option<Self> {
+                numbers.first_chunk::<$width>().map(|all| Self::new(*all))
+            }
+
+            #[inline(always)]
+            fn put(self, numbers: &mut [f64]) {
+                if let Some(place) = numbers.first_chunk_mut::<$width>() {
+                    *place = self.to_array();
+                }
+            }
+
+            #[inline(always)]
+            fn lane(&self, lane: usize) -> f64 {
+                self.to_array().get(lane).copied().unwrap_or_default()
+            }
+
+            #[inline(always)]
+            fn every(&self, holds: impl FnMut(f64) -> bool) -> bool {
+                self.to_array().into_iter().all(holds)
+            }
+
+            #[inline(always)]
+            fn root(self) -> Self {
+                self.sqrt()
+            }
+
+            #[inline(always)]
+            fn sign(self) -> Self {
+                let (zero, one) = (Self::splat(0.0), Self::splat(1.0));
+                (self.simd_gt(zero) & one) - (self.simd_lt(zero) & one)
+            }
+
+            #[inline(always)]
+            fn sin_cos_all<const N: usize>(angles: [Self; N]) -> [(Self, Self); N] {
+                angles.map(|angle| {
+                    let pairs: [(f64, f64); $width] = math::sin_cos_all(angle.to_array());
+                    let sines = Self::new(pairs.map(|pair| pair.0));
+                    (sines, Self::new(pairs.map(|pair| pair.1)))
+                })
+            }
+        }
+    };
+}
+
+#[cfg(all(vectors, not(target_feature = "avx")))]
+vector!(f64x2, 2);
+#[cfg(all(vectors, target_feature = "avx"))]
+vector!(f64x4, 4);
+#[cfg(all(vectors, target_feature = "avx512f"))]
+vector!(f64x8, 8);
+
+/// The most numbers that a register holds.
+#[cfg(all(vectors, target_feature = "avx512f"))]
+pub type Many = wide::f64x8;
+/// At most four numbers.
+#[cfg(all(vectors, target_feature = "avx"))]
+pub type Few = wide::f64x4;
+/// At most four numbers.
+#[cfg(all(vectors, not(target_feature = "avx")))]
+pub type Few = wide::f64x2;
+/// One number.
+#[cfg(not(vectors))]
+pub type Few = f64;
+/// The most numbers that a register holds.
+#[cfg(not(all(vectors, target_feature = "avx512f")))]
+pub type Many = Few;
