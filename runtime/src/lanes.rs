@@ -10,7 +10,7 @@ mod operators;
 mod vector;
 
 use core::marker::PhantomData;
-pub use guards::{closed, leg, reach};
+pub use guards::{Failed, closed, leg, reach};
 pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
 pub use vector::{Few, Many, Vector};
 

@@ -16,7 +16,7 @@ use overact_tier::by_tier;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
 const STATES: usize = 3;
 /// Robots in the default tier and in the full one.
-const COUNT: [usize; 2] = [1, 72];
+const COUNT: [usize; 2] = [1, 36];
 /// What robots are compared in, by their seeds: all functions, or those of a group.
 const GROUPS: [Option<&str>; 4] = [
     None,

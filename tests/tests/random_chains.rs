@@ -15,7 +15,7 @@ use overact_tier::by_tier;
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 const STATES: usize = 3;
 /// Robots in the default tier and in the full one.
-const COUNT: [usize; 2] = [4, 200];
+const COUNT: [usize; 2] = [4, 100];
 /// Draws for each robot, at most.
 const DRAWS: u64 = 20;
 

@@ -10,10 +10,24 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Robots of equal legs whose straight code is longer than an instruction cache.
-const ROBOTS: [&str; 2] = ["hexapod", "octopod"];
+/// Robots of equal legs: many, whose straight code is longer than an instruction cache, and few, which run side by side
+/// with four lanes and more, redundant and not.
+const ROBOTS: [&str; 4] = ["hexapod", "octopod", "delta", "delta_4"];
 
-const FUNCTIONS: &str = "idm_red_platform,idm_red_platform_base,idm_red_platform_from_joints,idm_red_platform_base_from_joints";
+const FUNCTIONS: [&str; 12] = [
+    "idm_red_platform",
+    "idm_red_platform_base",
+    "idm_red_platform_from_joints",
+    "idm_red_platform_base_from_joints",
+    "inverse_dynamics",
+    "inverse_dynamics_base",
+    "mass_matrix",
+    "mass_matrix_base",
+    "bias",
+    "bias_base",
+    "forward_dynamics",
+    "forward_dynamics_base",
+];
 
 #[test]
 fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
@@ -61,7 +75,7 @@ const fn has_v4() -> bool {
 
 fn module(stem: &str, side_by_side: bool) -> Result<String, Failure> {
     let source = description(stem)?;
-    let choice = overact_codegen::Choice::new(FUNCTIONS.split(','));
+    let choice = overact_codegen::Choice::new(FUNCTIONS);
     let choice = choice.map_err(|_| "a name is none of the functions'")?;
     let request = Request {
         functions: Some(&choice),
@@ -88,10 +102,16 @@ fn run(folder: &Path, flags: &str) -> Result<(), Failure> {
 
 /// Compares both modules of each robot at random states, a part of which is out of reach.
 const PROGRAM: &str = r#"
+mod delta_4_lanes;
+mod delta_4_straight;
+mod delta_lanes;
+mod delta_straight;
 mod hexapod_lanes;
 mod hexapod_straight;
 mod octopod_lanes;
 mod octopod_straight;
+
+use overact::StandardParameter as Symbol;
 
 struct Stream(u64);
 
@@ -103,59 +123,114 @@ impl Stream {
     fn numbers<const N: usize>(&mut self, around: [f64; N], spread: f64) -> [f64; N] {
         around.map(|x| x + spread * self.number())
     }
+    /// Of bodies that have a mass.
+    fn parameter(&mut self, symbol: Symbol) -> f64 {
+        let around = match symbol {
+            Symbol::M | Symbol::Ia => 1.0,
+            Symbol::Xx | Symbol::Yy | Symbol::Zz => 0.3,
+            _ => 0.02,
+        };
+        around * (1.0 + 0.2 * self.number())
+    }
+}
+
+type Outcome<const N: usize> = Result<[f64; N], overact::Error>;
+
+/// How many outputs do not fail, how many do, and how far apart they may be: far from home some poses are near to
+/// singular ones.
+#[derive(Default)]
+struct Seen([usize; 2], f64);
+
+impl Seen {
+    fn same<const N: usize>(&mut self, a: Outcome<N>, b: Outcome<N>) {
+        self.rows(a.map(|a| [a]), b.map(|b| [b]));
+    }
+    fn rows<const N: usize, const R: usize>(
+        &mut self,
+        a: Result<[[f64; N]; R], overact::Error>,
+        b: Result<[[f64; N]; R], overact::Error>,
+    ) {
+        match (a, b) {
+            (Ok(a), Ok(b)) => {
+                let (a, b) = (a.as_flattened(), b.as_flattened());
+                let largest = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let gap = a.iter().zip(b).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
+                assert!(gap <= self.1 * largest, "{gap} of {largest}");
+                self.0[0] += 1;
+            }
+            (Err(a), Err(b)) => {
+                self.0[1] += 1;
+                assert_eq!(a.to_string(), b.to_string());
+            }
+            (a, b) => panic!("{:?} {:?}", a.err(), b.err()),
+        }
+    }
 }
 
 macro_rules! compare {
     ($lanes:ident, $straight:ident, $robot:ident) => {{
         use $lanes::$robot as A;
         use $straight::$robot as B;
-        let (mut stream, mut failed) = (Stream(7), 0);
-        let mut same = |a: Result<Vec<f64>, overact::Error>, b: Result<Vec<f64>, overact::Error>| match (a, b) {
-            (Ok(a), Ok(b)) => {
-                let largest = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-                let gap = a.iter().zip(&b).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
-                assert!(a.len() == b.len() && gap <= 1e-11 * largest, "{gap} of {largest}");
-            }
-            (Err(a), Err(b)) => {
-                failed += 1;
-                assert_eq!(a.to_string(), b.to_string());
-            }
-            (a, b) => panic!("{a:?} {b:?}"),
-        };
+        let (mut stream, mut seen) = (Stream(7), Seen::default());
+        let symbols = A::PARAMETERS.iter().chain(&A::PAYLOAD_PARAMETERS).map(|p| p.symbol);
+        let parameters: Vec<f64> = symbols.map(|symbol| stream.parameter(symbol)).collect();
+        let parameters = parameters.try_into().expect("as many");
+        let of = |name| A::PARAMETERS.iter().find(|p| p.name == name).expect("one").symbol;
+        let symbols = A::BASE_PARAMETERS.iter().map(|p| of(p.parameter));
+        let symbols = symbols.chain(A::PAYLOAD_PARAMETERS.iter().map(|p| p.symbol));
+        let base: Vec<f64> = symbols.map(|symbol| stream.parameter(symbol)).collect();
+        let base = base.try_into().expect("as many");
         for turn in 0..2000 {
-            let spread = if turn % 10 == 0 { 1.0 } else { 0.1 };
+            let is_far = turn % 10 == 0;
+            let spread = if is_far { 1.0 } else { 0.05 };
+            seen.1 = if is_far { 1e-6 } else { 1e-11 };
             let pose = stream.numbers(A::HOME_POSE, spread);
             let mut joints = stream.numbers(A::HOME_JOINTS, 0.1);
-            if turn % 10 == 0 {
+            if is_far && A::DOF == 6 {
                 // A leg of no length, whichever it is.
                 let leg = turn / 10 % (joints.len() / 3);
                 joints[3 * leg + 2] = 0.0;
             }
-            let (twist, acceleration) = (stream.numbers([0.0; 6], 1.0), stream.numbers([0.0; 6], 10.0));
-            same(
-                A::idm_red_platform(&pose, &twist, &acceleration).map(|m| m.concat()),
-                B::idm_red_platform(&pose, &twist, &acceleration).map(|m| m.concat()),
+            let twist = stream.numbers([0.0; { A::DOF }], 1.0);
+            let acceleration = stream.numbers([0.0; { A::DOF }], 10.0);
+            let torques = stream.numbers([0.0; { A::ACTUATORS }], 10.0);
+            let (p, q, t, a) = (&pose, &joints, &twist, &acceleration);
+            seen.rows(A::idm_red_platform(p, t, a), B::idm_red_platform(p, t, a));
+            seen.rows(A::idm_red_platform_base(p, t, a), B::idm_red_platform_base(p, t, a));
+            seen.rows(
+                A::idm_red_platform_from_joints(p, q, t, a),
+                B::idm_red_platform_from_joints(p, q, t, a),
             );
-            same(
-                A::idm_red_platform_base(&pose, &twist, &acceleration).map(|m| m.concat()),
-                B::idm_red_platform_base(&pose, &twist, &acceleration).map(|m| m.concat()),
+            seen.rows(
+                A::idm_red_platform_base_from_joints(p, q, t, a),
+                B::idm_red_platform_base_from_joints(p, q, t, a),
             );
-            same(
-                A::idm_red_platform_from_joints(&pose, &joints, &twist, &acceleration).map(|m| m.concat()),
-                B::idm_red_platform_from_joints(&pose, &joints, &twist, &acceleration).map(|m| m.concat()),
+            seen.same(A::inverse_dynamics(p, t, a, &parameters), B::inverse_dynamics(p, t, a, &parameters));
+            seen.same(A::inverse_dynamics_base(p, t, a, &base), B::inverse_dynamics_base(p, t, a, &base));
+            seen.rows(A::mass_matrix(p, &parameters), B::mass_matrix(p, &parameters));
+            seen.rows(A::mass_matrix_base(p, &base), B::mass_matrix_base(p, &base));
+            seen.same(A::bias(p, t, &parameters), B::bias(p, t, &parameters));
+            seen.same(A::bias_base(p, t, &base), B::bias_base(p, t, &base));
+            seen.same(
+                A::forward_dynamics(p, t, &torques, &parameters),
+                B::forward_dynamics(p, t, &torques, &parameters),
             );
-            same(
-                A::idm_red_platform_base_from_joints(&pose, &joints, &twist, &acceleration).map(|m| m.concat()),
-                B::idm_red_platform_base_from_joints(&pose, &joints, &twist, &acceleration).map(|m| m.concat()),
+            seen.same(
+                A::forward_dynamics_base(p, t, &torques, &base),
+                B::forward_dynamics_base(p, t, &torques, &base),
             );
         }
-        assert!(failed >= 200, "{failed} states fail");
+        let [agree, fail] = seen.0;
+        println!("{} {agree} agree, {fail} fail", A::NAME);
+        assert!(agree >= 10_000 && fail >= 200, "{agree} agree, {fail} fail");
     }};
 }
 
 fn main() {
     compare!(hexapod_lanes, hexapod_straight, Hexapod);
     compare!(octopod_lanes, octopod_straight, Octopod);
+    compare!(delta_lanes, delta_straight, Delta);
+    compare!(delta_4_lanes, delta_4_straight, Delta4);
     println!("agree in {} lanes", <overact::lanes::Many as overact::lanes::Vector>::WIDTH);
 }
 "#;

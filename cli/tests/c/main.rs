@@ -311,9 +311,8 @@ fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
 fn robots_of_the_library_agree() -> Result<(), Failure> {
     for (stem, functions) in robots()? {
         let path = repository(&format!("robots/{stem}.toml"));
-        let effort = by_tier([Effort::None, Effort::Quick]);
-        let model = model(&path, effort, functions, Float::F64)?;
-        let seen = compare(&stem, model, by_tier([20, 200]))?;
+        let model = model(&path, Effort::None, functions, Float::F64)?;
+        let seen = compare(&stem, model, by_tier([20, 100]))?;
         assert!(seen.is_none_or(|seen| seen.values > 0));
     }
     Ok(())

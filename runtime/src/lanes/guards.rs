@@ -1,82 +1,107 @@
-//! What [`guard`] checks, in every lane: of several legs that fail in the same the first is told.
+//! What [`guard`] checks, in every lane. Of several legs that fail the first is told, as where legs are computed one
+//! after the other, though another one may have failed in an earlier condition.
 
 use super::{Lanes, Turn, Vector, row};
 use crate::{Error, guard};
 
+/// The first leg of a turn that fails, and how.
+#[derive(Debug, Default)]
+pub struct Failed(Option<(usize, Error)>);
+
+impl Failed {
+    /// None yet.
+    #[inline(always)]
+    #[must_use]
+    pub const fn none() -> Self {
+        Self(None)
+    }
+
+    /// Tells of the leg that failed.
+    ///
+    /// # Errors
+    /// What it failed in.
+    #[inline(always)]
+    pub fn told(self) -> Result<(), Error> {
+        self.0.map_or(Ok(()), |(_, error)| Err(error))
+    }
+
+    /// Takes note of the first lane that fails, unless a leg before it has.
+    #[cold]
+    #[inline(never)]
+    fn note<V: Vector, const LEGS: usize>(
+        &mut self,
+        legs: &[&'static str; LEGS],
+        at: Turn<V, LEGS>,
+        check: &dyn Fn(usize, &'static str) -> Result<(), Error>,
+    ) {
+        for lane in 0..V::WIDTH {
+            let leg = at.leg(lane);
+            let name = legs.get(leg).copied().unwrap_or_default();
+            if self.0.as_ref().is_some_and(|(known, _)| *known <= leg) {
+                return;
+            }
+            if let Err(error) = check(lane, name) {
+                self.0 = Some((leg, error));
+                return;
+            }
+        }
+    }
+}
+
 /// The radicand of the legs' inverse kinematics must not be negative.
-///
-/// # Errors
-/// [`Error::OutOfReach`]; also for NaN.
+/// Else, and for NaN, [`Error::OutOfReach`].
 #[inline(always)]
 pub fn reach<V: Vector, const LEGS: usize>(
+    failed: &mut Failed,
     radicand: impl Into<Lanes<V>>,
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
-) -> Result<(), Error> {
+) {
     let radicands = radicand.into().0;
-    if radicands.every(|radicand| radicand >= 0.0) {
-        return Ok(());
+    if !radicands.every(|radicand| radicand >= 0.0) {
+        failed.note(legs, at, &|lane, leg| {
+            guard::reach(radicands.lane(lane), leg)
+        });
     }
-    each(legs, at, &|lane, leg| {
-        guard::reach(radicands.lane(lane), leg)
-    })
 }
 
 /// The legs' determinants must not vanish; `home` are their magnitudes at home.
-///
-/// # Errors
-/// [`Error::SingularLeg`]; also for NaN.
+/// Else, and for NaN, [`Error::SingularLeg`].
 #[inline(always)]
 pub fn leg<V: Vector, const LEGS: usize>(
+    failed: &mut Failed,
     determinant: impl Into<Lanes<V>>,
     home: &[f64; LEGS],
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
-) -> Result<(), Error> {
+) {
     let (determinants, homes) = (determinant.into().0, row(home, at).0);
     let mut lane = 0..;
     let is_regular = |determinant: f64| {
         let home = homes.lane(lane.next().unwrap_or_default());
         determinant.abs() > overact_core::SINGULAR * home
     };
-    if determinants.every(is_regular) {
-        return Ok(());
+    if !determinants.every(is_regular) {
+        failed.note(legs, at, &|lane, leg| {
+            guard::leg(determinants.lane(lane), homes.lane(lane), leg)
+        });
     }
-    each(legs, at, &|lane, leg| {
-        guard::leg(determinants.lane(lane), homes.lane(lane), leg)
-    })
 }
 
 /// What a pose misses of what the legs allow must be small: at most `within` (m, rad).
-///
-/// # Errors
-/// [`Error::NotClosed`]; also for NaN.
+/// Else, and for NaN, [`Error::NotClosed`].
 #[inline(always)]
 pub fn closed<V: Vector, const LEGS: usize>(
+    failed: &mut Failed,
     gap: impl Into<Lanes<V>>,
     within: f64,
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
-) -> Result<(), Error> {
+) {
     let gaps = gap.into().0;
-    if gaps.every(|gap| gap.abs() <= within) {
-        return Ok(());
+    if !gaps.every(|gap| gap.abs() <= within) {
+        failed.note(legs, at, &|lane, leg| {
+            guard::closed(gaps.lane(lane), within, leg)
+        });
     }
-    each(legs, at, &|lane, leg| {
-        guard::closed(gaps.lane(lane), within, leg)
-    })
-}
-
-/// The error of the first lane that has one.
-#[cold]
-#[inline(never)]
-fn each<V: Vector, const LEGS: usize>(
-    legs: &[&'static str; LEGS],
-    at: Turn<V, LEGS>,
-    check: &dyn Fn(usize, &'static str) -> Result<(), Error>,
-) -> Result<(), Error> {
-    (0..V::WIDTH).try_for_each(|lane| {
-        let leg = legs.get(at.leg(lane)).copied().unwrap_or_default();
-        check(lane, leg)
-    })
 }

@@ -32,7 +32,9 @@ pub(super) struct Loop {
 const FEW: usize = 4;
 
 /// Names that the loop has for itself.
-const RESERVED: [&str; 7] = ["at", "added", "own", "rows", "sums", "solution", "output"];
+const RESERVED: [&str; 8] = [
+    "at", "added", "failed", "own", "rows", "sums", "solution", "output",
+];
 
 /// The body of a function in lanes.
 pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lanes) -> Loop {
@@ -55,6 +57,13 @@ pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lan
         Gathered::Sums(sums) => sums::parts(model, &split, sums, &body.output),
     };
     let places = places(lanes);
+    let [none_failed, failed] = match split.has_guards {
+        true => [
+            quote!(let mut failed = ::overact::lanes::Failed::none();),
+            quote!(failed.told()?;),
+        ],
+        false => [TokenStream::new(), TokenStream::new()],
+    };
     let (shared, own) = (&split.shared, &split.own);
     let statements = quote! {
         #constants
@@ -63,7 +72,9 @@ pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lan
         #tables
         for at in #places {
             #arrays
+            #none_failed
             #(#own)*
+            #failed
             #of_legs
         }
         #after

@@ -18,6 +18,8 @@ pub(super) struct Split<'a> {
     pub(super) own_names: HashSet<String>,
     pub(super) shared: Vec<TokenStream>,
     pub(super) own: Vec<TokenStream>,
+    /// Whether a leg may fail.
+    pub(super) has_guards: bool,
     /// How many guards were written.
     guards: usize,
 }
@@ -32,6 +34,7 @@ impl<'a> Split<'a> {
             own_names: HashSet::new(),
             shared: Vec::new(),
             own: Vec::new(),
+            has_guards: false,
             guards: 0,
         }
     }
@@ -51,6 +54,7 @@ impl<'a> Split<'a> {
                 let at = self.guards;
                 self.guards += 1;
                 if self.is_own(value) {
+                    self.has_guards = true;
                     let guard = self.guard(at, value, condition);
                     self.own.push(guard);
                 } else {
@@ -83,18 +87,20 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// A condition in all lanes; of several legs the first is told.
+    /// A condition in all lanes.
     fn guard(&self, at: usize, value: &Expression, condition: &Condition) -> TokenStream {
         let value = self.own_writer.tokens(value);
         match condition {
-            Condition::Reach { .. } => quote!(::overact::lanes::reach(#value, &LEGS, at)?;),
+            Condition::Reach { .. } => {
+                quote!(::overact::lanes::reach(&mut failed, #value, &LEGS, at);)
+            }
             Condition::Closed { within, .. } => {
                 let within = number(*within, Float::F64);
-                quote!(::overact::lanes::closed(#value, #within, &LEGS, at)?;)
+                quote!(::overact::lanes::closed(&mut failed, #value, #within, &LEGS, at);)
             }
             _ => {
                 let home = home(at);
-                quote!(::overact::lanes::leg(#value, &#home, &LEGS, at)?;)
+                quote!(::overact::lanes::leg(&mut failed, #value, &#home, &LEGS, at);)
             }
         }
     }

@@ -28,6 +28,9 @@ use template::Template;
 /// for each, as measured on x86-64 with regressors.
 const TOO_LONG: usize = 32 * 1024 / 19;
 
+/// Operations of a straight program, times legs, from which four lanes win.
+const FEW: usize = 1320;
+
 /// The fewest legs that are worth it.
 const LEGS: usize = 3;
 
@@ -42,11 +45,11 @@ pub(crate) fn beside(
     straight: &Program,
 ) -> Option<Lanes> {
     let legs = assembler.mechanism.legs.len();
-    let operations = straight.cost().operations();
-    let pays = pays(function, from, legs, operations)?;
     if legs < LEGS || assembler.selection.values.is_some() {
         return None;
     }
+    let operations = straight.cost().operations();
+    let pays = pays(function, from, legs, operations)?;
     let template = Template::of(assembler.mechanism)?;
     let draft = Draft {
         assembler,
@@ -79,14 +82,14 @@ fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -
     let from_joints = from == MotionInput::Joints;
     let (always, with_four) = match function {
         Function::IdmRedPlatform(_) if from_joints => (TOO_LONG, 680),
-        Function::IdmRedPlatform(_) => (TOO_LONG, 290),
+        Function::IdmRedPlatform(_) => (TOO_LONG, FEW / legs),
         Function::InverseDynamics(_)
         | Function::MassMatrix(_)
         | Function::Bias(_)
         | Function::ForwardDynamics(_) => match (from_joints, legs) {
             (true, _) => (TOO_LONG, 680),
-            (false, 3) => (600, 290),
-            (false, _) => (330, 250),
+            (false, 3) => (600, FEW / legs),
+            (false, _) => (FEW / legs, FEW / legs),
         },
         _ => return None,
     };
