@@ -251,8 +251,6 @@ impl FiveBar {
         const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- sines and cosines
         let [(s1_left, c1_left), (s1_right, c1_right)] = ::overact::math::sin_cos_all([
             actuators[0], actuators[1],
@@ -271,7 +269,7 @@ impl FiveBar {
         ::overact::guard::reach(t4, "left")?;
         let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
-            l_1_c1_minus_half_left + TWICE_L_2 * t1 - t2 * t5,
+            l_1_c1_minus_half_left + 0.5 * t1 - t2 * t5,
             L_1 * s1_left + HALF * s1_right_minus_s1_left + t1 * t5,
         ])
     }
@@ -294,15 +292,13 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -315,7 +311,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -361,15 +357,13 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -380,7 +374,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -416,15 +410,13 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -439,7 +431,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -516,14 +508,12 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -536,7 +526,7 @@ impl FiveBar {
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -702,15 +692,13 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -734,7 +722,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -784,15 +772,13 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -814,7 +800,7 @@ impl FiveBar {
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t2_left);
         let minus_a_on_f2_left = l1_x_left * acceleration[0]
@@ -827,7 +813,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -849,7 +835,7 @@ impl FiveBar {
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let rate_dot_1_right = k_right
             * (a_on_f1_right + rate_1_squared_right * t2_right);
         let minus_a_on_f2_right = l1_x_right * acceleration[0]
@@ -884,15 +870,13 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -907,7 +891,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -969,15 +953,13 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -992,7 +974,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -1026,7 +1008,7 @@ impl FiveBar {
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left
-                + rate_1_squared_left * (TWICE_L_2 * (rho_squared_left - 0.1025)));
+                + rate_1_squared_left * (0.5 * (rho_squared_left - 0.1025)));
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         // --- right
@@ -1040,7 +1022,7 @@ impl FiveBar {
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right
-                + rate_1_squared_right * (TWICE_L_2 * (rho_squared_right - 0.1025)));
+                + rate_1_squared_right * (0.5 * (rho_squared_right - 0.1025)));
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         ::core::result::Result::Ok([
@@ -1092,14 +1074,12 @@ impl FiveBar {
         const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -1122,7 +1102,7 @@ impl FiveBar {
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t3_left);
         let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
@@ -1153,7 +1133,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -1176,7 +1156,7 @@ impl FiveBar {
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let rate_dot_1_right = k_right
             * (a_on_f1_right + rate_1_squared_right * t3_right);
         let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
@@ -1497,14 +1477,12 @@ impl FiveBar {
         const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -1526,7 +1504,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -1558,7 +1536,7 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -1570,7 +1548,7 @@ impl FiveBar {
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -1732,15 +1710,13 @@ impl FiveBar {
         const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -1763,7 +1739,7 @@ impl FiveBar {
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t3_left);
         let a1_y_left = 49.05 * l1_x_left;
@@ -1773,7 +1749,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -1830,7 +1806,7 @@ impl FiveBar {
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let rate_dot_1_right = k_right
             * (a_on_f1_right + rate_1_squared_right * t3_right);
         let a1_y_right = 49.05 * l1_x_right;
@@ -2116,15 +2092,13 @@ impl FiveBar {
         const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -2141,7 +2115,7 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -2186,7 +2160,7 @@ impl FiveBar {
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -2199,7 +2173,7 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -2333,14 +2307,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -2363,14 +2335,14 @@ impl FiveBar {
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t3_left);
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -2393,7 +2365,7 @@ impl FiveBar {
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let rate_dot_1_right = k_right
             * (a_on_f1_right + rate_1_squared_right * t3_right);
         let a1_y_left = 49.05 * l1_x_left;
@@ -2634,13 +2606,11 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -2652,7 +2622,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -2687,7 +2657,7 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -2699,7 +2669,7 @@ impl FiveBar {
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -2805,14 +2775,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -2825,7 +2793,7 @@ impl FiveBar {
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -2866,7 +2834,7 @@ impl FiveBar {
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t3_left);
         // --- right
@@ -2880,7 +2848,7 @@ impl FiveBar {
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let rate_dot_1_right = k_right
             * (a_on_f1_right + rate_1_squared_right * t3_right);
         let a1_y_left = 49.05 * l1_x_left;
@@ -3116,14 +3084,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -3136,7 +3102,7 @@ impl FiveBar {
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -3181,7 +3147,7 @@ impl FiveBar {
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -3194,7 +3160,7 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -3280,14 +3246,12 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -3300,7 +3264,7 @@ impl FiveBar {
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -3381,14 +3345,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -3410,7 +3372,7 @@ impl FiveBar {
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t2_left);
         let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
@@ -3434,7 +3396,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -3468,7 +3430,7 @@ impl FiveBar {
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let minus_rate_dot_2_right = k_right
             * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
         let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
@@ -3724,14 +3686,12 @@ impl FiveBar {
         const L_2: ::core::primitive::f64 = 0.25;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -3750,7 +3710,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -3785,7 +3745,7 @@ impl FiveBar {
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -3797,7 +3757,7 @@ impl FiveBar {
         let rate_2_squared_right = rate_2_right * rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -3913,14 +3873,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -3943,7 +3901,7 @@ impl FiveBar {
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t2_left);
         let a1_x_left = 49.05 * l1_y_left;
@@ -3963,7 +3921,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -3995,7 +3953,7 @@ impl FiveBar {
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let minus_rate_dot_2_right = (minus_a_on_f2_right
             + rate_2_squared_right * t2_right) / det_right;
         let c2_right = L_1_PER_HALF_SQUARED * t2_right;
@@ -4231,14 +4189,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -4260,7 +4216,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -4296,7 +4252,7 @@ impl FiveBar {
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
@@ -4309,7 +4265,7 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
@@ -4402,15 +4358,13 @@ impl FiveBar {
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -4430,7 +4384,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -4509,15 +4463,13 @@ impl FiveBar {
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -4535,7 +4487,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -4621,14 +4573,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -4649,7 +4599,7 @@ impl FiveBar {
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = k_left
             * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
         let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
@@ -4683,7 +4633,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -4709,7 +4659,7 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
@@ -4781,15 +4731,13 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -4811,7 +4759,7 @@ impl FiveBar {
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t3_left = 0.5 * t2_left;
         let bias_rate_dot_2_left = k_left
             * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
         let c2_left = INV_HALF * t2_left;
@@ -4841,7 +4789,7 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
@@ -4868,7 +4816,7 @@ impl FiveBar {
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t3_right = 0.5 * t2_right;
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
@@ -4939,14 +4887,12 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -4970,7 +4916,7 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
@@ -4993,7 +4939,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -5026,7 +4972,7 @@ impl FiveBar {
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let t3_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t3_left = 0.5 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
             + rate_1_squared_left * t3_left) / det_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
@@ -5138,13 +5084,11 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2²
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        /// 2 l_2
-        const TWICE_L_2: ::core::primitive::f64 = 0.5;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -5168,7 +5112,7 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = 0.5 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
             * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
@@ -5190,7 +5134,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
@@ -5213,7 +5157,7 @@ impl FiveBar {
         let g2_vy_left = l1_y_left / det_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = 0.5 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
             + rate_2_squared_left * t2_left) / det_left;
         let c2_left = t2_left * L_1_PER_HALF_SQUARED;

@@ -41,8 +41,7 @@ impl Dimensions {
     fn made_of(values: &[(&str, f64)]) -> Self {
         let mut bases: Vec<Base> = Vec::new();
         for &(name, value) in values {
-            // A number that stands for itself in every expression needs no name.
-            if !value.is_normal() || value == 1.0 || value == 2.0 || value == 0.5 {
+            if !value.is_normal() || stands_for_itself(value) {
                 continue;
             }
             match bases.iter_mut().find(|base| is_same(base.value, value)) {
@@ -62,6 +61,7 @@ impl Dimensions {
                 all.extend((at < other_at).then(|| base.times(other)));
             }
         }
+        all.retain(|dimension| !stands_for_itself(dimension.value));
         all.sort_by_key(|dimension| dimension.size);
         Self(all)
     }
@@ -74,6 +74,11 @@ impl Dimensions {
         let is_only = fitting.next().is_none_or(|second| second.size > first.size);
         is_only.then_some(first)
     }
+}
+
+/// Whether a number needs no name in any expression: twice something is no ratio of lengths, even if there is one of 2.
+fn stands_for_itself(value: f64) -> bool {
+    [0.5, 1.0, 2.0].into_iter().any(|own| is_same(own, value))
 }
 
 fn is_same(a: f64, b: f64) -> bool {
@@ -195,5 +200,6 @@ mod tests {
     #[test]
     fn zero_and_one_are_numbers() {
         assert_eq!(name(&[("zero", 0.0), ("one", 1.0)], 1.0), None);
+        assert_eq!(name(&[("r_b", 0.2), ("r_p", 0.1)], 2.0), None);
     }
 }
