@@ -1,9 +1,10 @@
 //! Regressors in lanes: the columns of one leg, and those of what all share.
 
 use super::draft::Draft;
+use super::kept::kept_columns;
 use crate::cas::Arena;
-use crate::derivation::{BodyParameter, derive};
-use crate::lowering::{Column, Gathered, Lanes};
+use crate::derivation::derive;
+use crate::lowering::{Gathered, Lanes};
 use overact_core::Columns;
 
 /// The regressor of a template's first leg and of what all legs share.
@@ -22,37 +23,4 @@ pub(super) fn lanes(draft: &Draft<'_>, columns: Columns) -> Option<Lanes> {
     derived.keep_columns(&kept);
     let lowered = draft.lowered(&arena, derived)?;
     draft.lanes(lowered, Gathered::Columns(columns))
-}
-
-/// Which columns of a function stay, and where they and those of the other legs stand. None if the legs' columns do
-/// not follow one another at a distance of their own.
-pub(super) fn kept_columns(
-    parameters: &[BodyParameter],
-    legs: usize,
-) -> Option<(Vec<usize>, Vec<Column>)> {
-    let mut kept = Vec::new();
-    for (at, &parameter) in parameters.iter().enumerate() {
-        let BodyParameter::Leg { leg, joint, symbol } = parameter else {
-            kept.push((at, Column::Shared(at)));
-            continue;
-        };
-        if leg > 0 {
-            continue;
-        }
-        let of = |leg| {
-            let same = BodyParameter::Leg { leg, joint, symbol };
-            parameters.iter().position(|other| *other == same)
-        };
-        let stride = of(1)?.checked_sub(at)?;
-        if !(0..legs).all(|leg| of(leg) == Some(at + leg * stride)) {
-            return None;
-        }
-        kept.push((at, Column::OfLegs { first: at, stride }));
-    }
-    let of_first = kept
-        .iter()
-        .filter(|(_, column)| matches!(column, Column::OfLegs { .. }));
-    let shared = kept.len() - of_first.clone().count();
-    let whole = of_first.count() * legs + shared == parameters.len();
-    whole.then(|| kept.into_iter().unzip())
 }

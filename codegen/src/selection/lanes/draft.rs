@@ -1,6 +1,6 @@
 //! What a program in lanes is made from, and the steps that all of them take: lowering, constants, whose each input is.
 
-use super::columns::kept_columns;
+use super::kept::kept_columns;
 use super::outcome::{at_home, of_leg, value_of};
 use super::template::{ARRAY, Template};
 use crate::cas::{Arena, InputElement};

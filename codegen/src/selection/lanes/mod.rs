@@ -13,6 +13,7 @@
 mod columns;
 mod draft;
 mod fields;
+mod kept;
 mod outcome;
 mod sums;
 mod template;
