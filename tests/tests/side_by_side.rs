@@ -12,7 +12,7 @@ use std::process::Command;
 
 /// Robots of equal legs: many, whose straight code is longer than an instruction cache, and few, which run side by side
 /// with four lanes and more, redundant and not.
-const ROBOTS: [&str; 4] = ["hexapod", "octopod", "delta", "delta_4"];
+const ROBOTS: [&str; 5] = ["hexapod", "octopod", "delta", "delta_4", "spherical_4rrr"];
 
 const FUNCTIONS: [&str; 12] = [
     "idm_red_platform",
@@ -110,6 +110,8 @@ mod hexapod_lanes;
 mod hexapod_straight;
 mod octopod_lanes;
 mod octopod_straight;
+mod spherical_4rrr_lanes;
+mod spherical_4rrr_straight;
 
 use overact::StandardParameter as Symbol;
 
@@ -182,10 +184,11 @@ macro_rules! compare {
         let base = base.try_into().expect("as many");
         for turn in 0..2000 {
             let is_far = turn % 10 == 0;
-            let spread = if is_far { 1.0 } else { 0.05 };
+            // The very home once, where what legs divide by may vanish.
+            let spread = if turn == 1 { 0.0 } else if is_far { 1.0 } else { 0.05 };
             seen.1 = if is_far { 1e-6 } else { 1e-11 };
             let pose = stream.numbers(A::HOME_POSE, spread);
-            let mut joints = stream.numbers(A::HOME_JOINTS, 0.1);
+            let mut joints = stream.numbers(A::HOME_JOINTS, if turn == 1 { 0.0 } else { 0.1 });
             if is_far && A::DOF == 6 {
                 // A leg of no length, whichever it is.
                 let leg = turn / 10 % (joints.len() / 3);
@@ -195,6 +198,9 @@ macro_rules! compare {
             let acceleration = stream.numbers([0.0; { A::DOF }], 10.0);
             let torques = stream.numbers([0.0; { A::ACTUATORS }], 10.0);
             let (p, q, t, a) = (&pose, &joints, &twist, &acceleration);
+            if turn == 1 {
+                assert!(A::idm_red_platform(p, t, a).is_ok() && A::bias(p, t, &parameters).is_ok(), "home");
+            }
             seen.rows(A::idm_red_platform(p, t, a), B::idm_red_platform(p, t, a));
             seen.rows(A::idm_red_platform_base(p, t, a), B::idm_red_platform_base(p, t, a));
             seen.rows(
@@ -222,15 +228,21 @@ macro_rules! compare {
         }
         let [agree, fail] = seen.0;
         println!("{} {agree} agree, {fail} fail", A::NAME);
-        assert!(agree >= 10_000 && fail >= 200, "{agree} agree, {fail} fail");
+        assert!(agree >= 10_000, "{agree} agree");
+        fail
     }};
 }
 
 fn main() {
-    compare!(hexapod_lanes, hexapod_straight, Hexapod);
-    compare!(octopod_lanes, octopod_straight, Octopod);
-    compare!(delta_lanes, delta_straight, Delta);
-    compare!(delta_4_lanes, delta_4_straight, Delta4);
+    let failed = [
+        compare!(hexapod_lanes, hexapod_straight, Hexapod),
+        compare!(octopod_lanes, octopod_straight, Octopod),
+        compare!(delta_lanes, delta_straight, Delta),
+        compare!(delta_4_lanes, delta_4_straight, Delta4),
+    ];
+    // Of the others many states are out of reach; this one reaches everywhere.
+    assert!(failed.iter().all(|failed| *failed >= 200), "{failed:?}");
+    compare!(spherical_4rrr_lanes, spherical_4rrr_straight, Spherical4Rrr);
     println!("agree in {} lanes", <overact::lanes::Many as overact::lanes::Vector>::WIDTH);
 }
 "#;

@@ -66,7 +66,9 @@ pub(crate) fn beside(
     let (shared, own) = lanes.operations();
     let [is_cheap, is_worth_four] =
         MOST.map(|most| (shared + own * legs) * 100 <= operations * most);
-    let is_right = has_lanes_guards(&lanes) && outcome::agrees(assembler, &lanes, straight);
+    let is_right = has_lanes_guards(&lanes)
+        && outcome::is_regular_at_home(assembler, &lanes)
+        && outcome::agrees(assembler, &lanes, straight);
     let pays = match pays {
         Pays::Always if is_cheap => Pays::Always,
         _ => Pays::WithFour,

@@ -2,7 +2,7 @@
 
 use crate::derivation::{BodyParameter, ROWS, SUMS};
 use crate::evaluation::Rows;
-use crate::lowering::{Array, Column, Elements, Entry, Gathered, Lanes, LegRows};
+use crate::lowering::{Array, Column, Condition, Elements, Entry, Gathered, Lanes, LegRows};
 use crate::lowering::{Operand, Program, Sums};
 use crate::mechanism::states::{State, random_states};
 use crate::selection::assemble::Assembler;
@@ -14,9 +14,46 @@ const STATES: usize = 4;
 /// The values of an input by its name.
 type Given<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
 
-/// Whether the program gives what the straight one does.
-pub(super) fn agrees(assembler: &Assembler<'_>, lanes: &Lanes, straight: &Program) -> bool {
+/// How small at home what a leg divides by may be, beside what it is at other states.
+const VANISHING: f64 = 1e-4;
+
+/// Whether no leg divides by what vanishes at home: the numbers of the leg that stands for all are not those of any, so
+/// what is zero for these may have been none for it.
+pub(super) fn is_regular_at_home(assembler: &Assembler<'_>, lanes: &Lanes) -> bool {
+    let guards = lanes.program.guards.iter().zip(&lanes.homes);
+    let of_legs = guards.filter(|(guard, _)| matches!(guard.condition, Condition::Leg { .. }));
+    let (operands, homes): (Vec<Operand>, Vec<&Vec<f64>>) =
+        of_legs.map(|(guard, homes)| (guard.operand, homes)).unzip();
     let states = random_states(assembler.mechanism, STATES, 5);
+    (0..lanes.legs.len()).all(|leg| {
+        let largest = states
+            .iter()
+            .try_fold(vec![0.0_f64; operands.len()], |largest, state| {
+                let given = |name: &str| at_state(assembler, state, name);
+                let given = |name: &str| of_leg(lanes, leg, name, &given);
+                let values = value_of(&lanes.program, &operands, &given)?;
+                let larger = largest
+                    .iter()
+                    .zip(values)
+                    .map(|(l, value)| l.max(value.abs()));
+                Some(larger.collect())
+            });
+        largest.is_some_and(|largest| {
+            let mut both = homes.iter().zip(largest);
+            both.all(|(home, largest)| home[leg] > VANISHING * largest)
+        })
+    })
+}
+
+/// Whether the program gives what the straight one does, at home and elsewhere.
+pub(super) fn agrees(assembler: &Assembler<'_>, lanes: &Lanes, straight: &Program) -> bool {
+    let mut states = random_states(assembler.mechanism, STATES, 5);
+    let home = &assembler.mechanism.home;
+    states.extend(states.first().cloned().map(|state| State {
+        pose: home.pose.clone(),
+        joints: home.joints.clone(),
+        ..state
+    }));
     states.iter().all(|state| {
         let given = |name: &str| at_state(assembler, state, name);
         let Some(wanted) = value(straight, &given) else {
