@@ -357,7 +357,7 @@ fn all_are_identified() {
 fn all_read_their_own_parameters() {
     let bench = Bench::new();
     let all = robots_of_the_tier();
-    // Every second one of all, among them each kind of robot.
+    // Every second one of all: this is most of the time that the library takes here.
     for name in all.into_iter().step_by(2).take(by_tier([1, usize::MAX])) {
         // Less than most of a period is too little for six joints that stand still in turn.
         bench.write("my.toml", &shortened(&name, "4 s"));

@@ -16,7 +16,7 @@ const HEADER: &str = "\
 # its text; arc tangents, signs of velocities, guards and negations where there are any. What a function
 # calls is counted in; what it takes for each step of an iteration stands behind `each_step`.
 # Of legs that run side by side in Rust stand behind `side_by_side` the operations that are done once, those of
-# each leg, and how many legs there are.
+# each leg, how many legs there are, and how many lanes there have to be.
 # `cargo xtask generated ROBOT` writes a module to target/generated/, to read.
 ";
 

@@ -101,23 +101,9 @@ impl Draft<'_> {
         let inputs = program.inputs.iter().enumerate();
         let mut inputs: Vec<Elements> = inputs.map(|(at, input)| of(at, &input.name)).collect();
         for columns in [Columns::Standard, Columns::Base] {
-            let parameters = self.parameters(columns);
             let name = input_of(columns).name();
-            let Some(at) = program.inputs.iter().position(|input| input.name == name) else {
-                continue;
-            };
-            let (kept, columns) = kept_columns(&parameters, legs)?;
-            let mut places = vec![None; parameters.len()];
-            for (at, column) in kept.into_iter().zip(columns) {
-                if let Column::OfLegs { stride, .. } = column {
-                    places[at] = Some(stride);
-                }
-            }
-            inputs.push(scatter(program, at, &places));
-            let is_shared = |index: usize| !matches!(parameters[index], BodyParameter::Leg { .. });
-            let mut operands = program.operands();
-            if !operands.all(|o| !matches!(o, Operand::Input { array, index } if array == at && !is_shared(index))) {
-                return None;
+            if let Some(at) = program.inputs.iter().position(|input| input.name == name) {
+                inputs.push(self.own_parameters(program, at, columns)?);
             }
         }
         let is_own = |operand| match operand {
@@ -128,6 +114,32 @@ impl Draft<'_> {
             _ => true,
         };
         program.operands().all(is_own).then_some(inputs)
+    }
+
+    /// Puts the first leg's elements of the input of parameters `at` into one of their own. None if the program reads those
+    /// of another leg.
+    fn own_parameters(
+        &self,
+        program: &mut Program,
+        at: usize,
+        columns: Columns,
+    ) -> Option<Elements> {
+        let parameters = self.parameters(columns);
+        let (kept, columns) = kept_columns(&parameters, self.assembler.mechanism.legs.len())?;
+        let mut places = vec![None; parameters.len()];
+        for (at, column) in kept.into_iter().zip(columns) {
+            if let Column::OfLegs { stride, .. } = column {
+                places[at] = Some(stride);
+            }
+        }
+        let elements = scatter(program, at, &places);
+        let is_of_another = |operand| match operand {
+            Operand::Input { array, index } if array == at => {
+                matches!(parameters[index], BodyParameter::Leg { .. })
+            }
+            _ => false,
+        };
+        (!program.operands().any(is_of_another)).then_some(elements)
     }
 
     /// What the elements of a function's input of parameters are.
