@@ -108,6 +108,23 @@ pub fn scattered<const LENGTH: usize, V: Vector, const LEGS: usize>(
     Lanes(V::of(|lane| of_lane(lane).unwrap_or(0.0)))
 }
 
+/// An element of each of the legs of a turn, as [`scattered`], of an array in which only the first `count` legs have one;
+/// zero for the others.
+#[inline(always)]
+#[must_use]
+pub fn scattered_of_first<const LENGTH: usize, V: Vector, const LEGS: usize>(
+    array: &[f64; LENGTH],
+    [first, stride]: [usize; 2],
+    count: usize,
+    at: Turn<V, LEGS>,
+) -> Lanes<V> {
+    let of_leg = |leg: usize| match leg < count {
+        true => array.get(first + leg * stride).copied(),
+        false => None,
+    };
+    Lanes(V::of(|lane| of_leg(at.leg(lane)).unwrap_or(0.0)))
+}
+
 /// The sum over all legs: halves are added until one number is left, whatever the number of lanes.
 #[inline(always)]
 #[must_use]
@@ -123,6 +140,27 @@ pub fn sum<const LEGS: usize>(of_legs: &[f64; LEGS]) -> f64 {
         length = half;
     }
     sums.first().copied().unwrap_or(0.0)
+}
+
+/// Writes a column of each of the legs of a turn into a row, as [`put`], in which only the first `count` legs have one.
+#[inline(always)]
+pub fn put_of_first<const COLUMNS: usize, V: Vector, const LEGS: usize>(
+    row: &mut [f64; COLUMNS],
+    [first, stride]: [usize; 2],
+    count: usize,
+    at: Turn<V, LEGS>,
+    value: impl Into<Lanes<V>>,
+) {
+    let numbers = value.into().0;
+    for lane in 0..V::WIDTH.min(LEGS) {
+        let leg = at.0 + lane;
+        if leg >= count {
+            return;
+        }
+        if let Some(place) = row.get_mut(first + leg * stride) {
+            *place = numbers.lane(lane);
+        }
+    }
 }
 
 /// Writes a column of each of the legs of a turn into a row: that of the first of all legs is `first`, and from one

@@ -11,8 +11,17 @@ use std::path::Path;
 use std::process::Command;
 
 /// Robots of equal legs: many, whose straight code is longer than an instruction cache, and few, which run side by side
-/// with four lanes and more, redundant and not.
-const ROBOTS: [&str; 5] = ["hexapod", "octopod", "delta", "delta_4", "spherical_4rrr"];
+/// with four lanes and more, redundant and not, in one working mode and (DualV) in two, with base columns that the last
+/// leg has not.
+const ROBOTS: [&str; 7] = [
+    "hexapod",
+    "octopod",
+    "delta",
+    "delta_4",
+    "dualv",
+    "planar_4prr",
+    "spherical_4rrr",
+];
 
 const FUNCTIONS: [&str; 12] = [
     "idm_red_platform",
@@ -106,10 +115,14 @@ mod delta_4_lanes;
 mod delta_4_straight;
 mod delta_lanes;
 mod delta_straight;
+mod dualv_lanes;
+mod dualv_straight;
 mod hexapod_lanes;
 mod hexapod_straight;
 mod octopod_lanes;
 mod octopod_straight;
+mod planar_4prr_lanes;
+mod planar_4prr_straight;
 mod spherical_4rrr_lanes;
 mod spherical_4rrr_straight;
 
@@ -239,6 +252,8 @@ fn main() {
         compare!(octopod_lanes, octopod_straight, Octopod),
         compare!(delta_lanes, delta_straight, Delta),
         compare!(delta_4_lanes, delta_4_straight, Delta4),
+        compare!(dualv_lanes, dualv_straight, DualV),
+        compare!(planar_4prr_lanes, planar_4prr_straight, Planar4Prr),
     ];
     // Of the others many states are out of reach; this one reaches everywhere.
     assert!(failed.iter().all(|failed| *failed >= 200), "{failed:?}");

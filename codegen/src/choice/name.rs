@@ -83,6 +83,9 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
     let (Meant::Form(function, _) | Meant::Forms(function)) = meant else {
         return "";
     };
+    if tree && matches!(meant, Meant::Form(_, MotionInput::Joints)) {
+        return ": its pose are its joints, which the function without `_from_joints` takes";
+    }
     match function.condition() {
         Condition::Platform if tree => ": that is one of robots with a platform",
         Condition::Redundancy => {

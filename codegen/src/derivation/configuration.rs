@@ -6,7 +6,7 @@
 
 use super::motion_input::MotionInput;
 use crate::cas::{Arena, Direction, Expr, Number, Ratio, SymbolId};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Home, Mechanism};
 use std::cell::RefCell;
 
 /// The input array of all joints.
@@ -32,6 +32,8 @@ pub struct Configuration<'a> {
     names: Vec<(String, String)>,
     /// The joints of q_t that are the pose, in its order: those of a skeleton and of branches.
     in_pose: Vec<usize>,
+    /// For every root that was taken: the first joint of its leg, and whether it is positive at home.
+    roots: Vec<(usize, bool)>,
 }
 
 impl<'a> Configuration<'a> {
@@ -54,7 +56,38 @@ impl<'a> Configuration<'a> {
             names: names.collect(),
             in_pose: (mechanism.skeleton())
                 .map_or_else(Vec::new, |_| mechanism.coordinate_joints()),
+            roots: Vec::new(),
         }
+    }
+
+    /// The next root in the closed form of a leg, with the sign that it has at home. What is negative in the leg's
+    /// working mode may be positive in that of another leg that it stands for.
+    pub(super) fn root(
+        &mut self,
+        first_joint: usize,
+        home: &Home,
+        radicand: Expr<'a>,
+        is_positive: bool,
+    ) -> Expr<'a> {
+        let own = self.roots.iter().filter(|(leg, _)| *leg == first_joint);
+        let sign = match first_joint {
+            0 => home.signs.get(own.count()).copied().flatten(),
+            _ => None,
+        };
+        self.roots.push((first_joint, is_positive));
+        let root = match sign {
+            Some(sign) => radicand.sqrt() * self.arena.input(sign.array, sign.index),
+            None => radicand.sqrt(),
+        };
+        if is_positive { root } else { -root }
+    }
+
+    /// For every root that was taken, whether it is positive at home.
+    pub(super) fn signs(&self) -> Vec<bool> {
+        self.roots
+            .iter()
+            .map(|&(_, is_positive)| is_positive)
+            .collect()
     }
 
     /// What the configuration is given by.

@@ -74,6 +74,7 @@ pub use functions::{Derived, derive};
 pub(crate) use guard::{Guard, GuardKind};
 pub(crate) use inventory::sources;
 pub use inventory::{function_name, inventory};
+pub(crate) use inverse_kinematics::working_modes;
 pub use motion_input::MotionInput;
 pub(crate) use orientation::{is_whole, station_choices};
 pub use parameter::BodyParameter;

@@ -48,7 +48,7 @@ pub(crate) fn with_headings(code: &str, sections: &[Sections]) -> String {
     out
 }
 
-/// Whether a statement begins by assigning this name, or this name beside another one.
+/// Whether a statement begins by assigning this name, mutable or not, or this name beside another one.
 fn assigns(line: &str, name: &str) -> bool {
     let Some(rest) = line.strip_prefix("let ") else {
         return false;
@@ -56,7 +56,7 @@ fn assigns(line: &str, name: &str) -> bool {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     let mut words = rest
         .split(|c: char| !is_part(c))
-        .filter(|word| !word.is_empty());
+        .filter(|word| !word.is_empty() && *word != "mut");
     let is_pair = rest.starts_with(['(', '[']);
     words.next() == Some(name) || (is_pair && words.next() == Some(name))
 }

@@ -143,14 +143,22 @@ pub fn derives() -> Vec<syn::Path> {
 /// How large the robot is.
 fn sizes(model: &RobotModel) -> String {
     let mechanism = &model.mechanism;
+    let counted = |count: usize, one: &str, many: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {many}"),
+    };
     format!(
-        " {} legs, {} joints, {} actuators, {} degrees of freedom; {} standard parameters, {} base parameters.",
-        mechanism.legs.len(),
-        mechanism.joints().len(),
-        mechanism.actuated().len(),
-        mechanism.dof(),
-        model.selection.standard.len(),
-        model.base.len()
+        " {}, {}, {}, {}; {}, {}.",
+        counted(mechanism.legs.len(), "leg", "legs"),
+        counted(mechanism.joints().len(), "joint", "joints"),
+        counted(mechanism.actuated().len(), "actuator", "actuators"),
+        counted(mechanism.dof(), "degree of freedom", "degrees of freedom"),
+        counted(
+            model.selection.standard.len(),
+            "standard parameter",
+            "standard parameters"
+        ),
+        counted(model.base.len(), "base parameter", "base parameters"),
     )
 }
 

@@ -7,18 +7,32 @@
 
 use super::program::{Array, Entry, Operand, Program, Step};
 
+/// Where numbers of legs stand in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OfLegs {
+    /// That of the first leg.
+    pub first: usize,
+    /// From one leg's to the next one's.
+    pub stride: usize,
+    /// The first so many legs have one; the column of another leg was eliminated.
+    pub count: usize,
+}
+
+impl OfLegs {
+    /// That of a leg, if it has one.
+    #[must_use]
+    pub fn of(self, leg: usize) -> Option<usize> {
+        (leg < self.count).then_some(self.first + leg * self.stride)
+    }
+}
+
 /// Where a column of the program stands among those of the function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Column {
     /// It is shared by all legs, and stands here.
     Shared(usize),
-    /// Each leg has one.
-    OfLegs {
-        /// That of the first leg.
-        first: usize,
-        /// From one leg's to the next one's.
-        stride: usize,
-    },
+    /// Legs have one each.
+    OfLegs(OfLegs),
 }
 
 /// Whose the elements of an input are.
@@ -30,12 +44,12 @@ pub enum Elements {
     Constants,
     /// So many of each leg, one leg after the other.
     InTurn(usize),
-    /// Of each leg these of another input's: that of the first leg, and how far it is from one leg's to the next one's.
+    /// Of each leg these of another input's; zero for legs that have none.
     Scattered {
         /// Which input.
         of: usize,
-        /// For each element the first leg's, and the distance.
-        places: Vec<[usize; 2]>,
+        /// For each element where it stands.
+        places: Vec<OfLegs>,
     },
 }
 
@@ -275,20 +289,19 @@ impl Folding {
     }
 }
 
-/// Puts elements of an input, those of the first of some legs, into an input of their own. `places` has of each element the
-/// distance to that of the next leg; none if all legs share it.
-pub(crate) fn scatter(program: &mut Program, of: usize, places: &[Option<usize>]) -> Elements {
-    let mut found: Vec<[usize; 2]> = Vec::new();
+/// Puts elements of an input, those of the first of some legs, into an input of their own. `places` has of each element
+/// where those of the legs stand; none if all legs share it.
+pub(crate) fn scatter(program: &mut Program, of: usize, places: &[Option<OfLegs>]) -> Elements {
+    let mut found: Vec<OfLegs> = Vec::new();
     let own = program.inputs.len();
     program.replace(|operand| {
         let Operand::Input { array, index } = operand else {
             return operand;
         };
-        let stride = places.get(index).copied().flatten();
-        let Some(stride) = stride.filter(|_| array == of) else {
+        let place = places.get(index).copied().flatten();
+        let Some(place) = place.filter(|_| array == of) else {
             return operand;
         };
-        let place = [index, stride];
         let known = found.iter().position(|other| *other == place);
         let index = known.unwrap_or_else(|| {
             found.push(place);

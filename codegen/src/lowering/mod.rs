@@ -27,7 +27,7 @@ mod schedule;
 mod tests;
 
 pub use dag::rays::States;
-pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, Pays, Sums};
+pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, OfLegs, Pays, Sums};
 pub(crate) use lanes::{fold, scatter};
 pub use limits::SearchLimits;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};

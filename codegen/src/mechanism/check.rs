@@ -316,6 +316,7 @@ pub(super) fn rough_home(description: &Description) -> Home {
     Home {
         pose,
         joints,
+        signs: Vec::new(),
         actuators: Vec::new(),
     }
 }

@@ -14,6 +14,9 @@ pub struct Home {
     pub joints: Vec<f64>,
     /// Those of the actuated joints.
     pub actuators: Vec<f64>,
+    /// For the roots in the closed form of the first leg's joints, in order, whose sign is an element of an array:
+    /// where that leg stands for others of another working mode. Its own are those of home.
+    pub signs: Vec<Option<InputElement>>,
 }
 
 impl Home {
@@ -25,6 +28,7 @@ impl Home {
             actuators: actuated.iter().map(|&i| joints[i]).collect(),
             pose,
             joints,
+            signs: Vec::new(),
         }
     }
 
@@ -35,7 +39,7 @@ impl Home {
             "pose" => &self.pose,
             "joints" => &self.joints,
             "actuators" => &self.actuators,
-            _ => return None,
+            _ => return self.signs.contains(&Some(element)).then_some(1.0),
         };
         values.get(element.index).copied()
     }

@@ -136,7 +136,7 @@ impl Labels {
         let label = |row: &[String], column: &Column| {
             let (at, of_leg) = match *column {
                 Column::Shared(at) => (at, None),
-                Column::OfLegs { first, .. } => (first, of_first.as_deref()),
+                Column::OfLegs(place) => (place.first, of_first.as_deref()),
             };
             let label = row.get(at).cloned().unwrap_or_default();
             of_leg.map_or(label.clone(), |of_leg| label.replace(of_leg, "_leg_on_"))

@@ -43,6 +43,8 @@ pub(super) struct Symbol {
     /// The real sample of the number and of the angle.
     pub(super) sample: f64,
     kind: Kind,
+    /// The values of any number, where the symbol's own are those of a sign.
+    as_any: Option<Fingerprint>,
 }
 
 impl Symbol {
@@ -59,6 +61,7 @@ impl Symbol {
             circle: std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11)))),
             sample,
             kind,
+            as_any: None,
         }
     }
 
@@ -89,9 +92,11 @@ impl Arena {
         self.tables.borrow().symbols[id.0 as usize].is_placeholder()
     }
 
-    /// The values of a symbol as a number.
+    /// The values of a symbol as a number. A sign has those of any number here: where there is one point of the field
+    /// only, no value has the square one and is neither one nor its negative.
     pub(crate) fn symbol_fingerprint(&self, id: SymbolId) -> Fingerprint {
-        self.tables.borrow().symbols[id.0 as usize].fingerprint
+        let own = &self.tables.borrow().symbols[id.0 as usize];
+        own.as_any.unwrap_or(own.fingerprint)
     }
 
     /// All symbols.
@@ -138,6 +143,41 @@ impl Arena {
         own.sample = number.value();
         tables.stands.insert(number.image(), (symbol, false));
         tables.stands.insert((-number).image(), (symbol, true));
+    }
+
+    /// A sum of products of constants: one constant, unless something stands for a factor.
+    pub(crate) fn constant_sum<const N: usize>(&self, terms: [[Number; 3]; N]) -> Expr<'_> {
+        let tables = self.tables.borrow();
+        let mut factors = terms.iter().flatten();
+        let stands = factors.any(|factor| tables.stands.contains_key(&factor.image()));
+        drop(tables);
+        match stands {
+            false => {
+                let products = terms.iter().map(|&[a, b, c]| a * b * c);
+                self.number(products.fold(Number::ZERO, |sum, product| sum + product))
+            }
+            true => {
+                let products = terms.iter().map(|term| {
+                    let [a, b, c] = term.map(|factor| self.number(factor));
+                    a * b * c
+                });
+                products.fold(self.zero(), |sum, product| sum + product)
+            }
+        }
+    }
+
+    /// Lets an element of an input array be a sign: one at the first point of the field and at the real one, minus one at
+    /// the second, so that its square is one and it is neither.
+    pub(crate) fn let_be_sign(&self, array: &'static str, index: usize) {
+        let symbol = self.input_symbol(array, index);
+        let mut tables = self.tables.borrow_mut();
+        let own = &mut tables.symbols[symbol.0 as usize];
+        own.as_any = Some(own.fingerprint);
+        own.fingerprint = Fingerprint {
+            image: [Element::ONE, -Element::ONE],
+            sample: Sample::real(1.0),
+        };
+        own.sample = 1.0;
     }
 
     /// Lets four elements of an input array be a quaternion of length one, some of which are zero: its points of the
@@ -209,6 +249,7 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::{Arena, Number, Ratio};
 
     /// The entries of a quaternion have squares of sum one, and with one that is zero so have the others.
     #[test]
@@ -225,5 +266,33 @@ mod tests {
             let less: Expr<'_> = (3..6).map(|k| entry(k) * entry(k)).sum();
             assert_eq!(less.is_one(), zero == [6], "{zero:?}");
         }
+    }
+
+    #[test]
+    fn a_sign_is_neither_one_nor_minus_one_and_its_square_is_one() {
+        let arena = Arena::new();
+        arena.let_be_sign("of_leg", 0);
+        let (sign, x) = (arena.input("of_leg", 0), arena.input("pose", 0));
+        assert_eq!(sign * sign, arena.one());
+        assert_eq!(sign * (sign * x), x);
+        assert_eq!(x / sign, sign * x);
+        assert_ne!(sign * x, x);
+        assert_ne!(sign * x, -x);
+        // Cosine and sine with a root of either sign.
+        let cosine = sign * (arena.one() - x * x).sqrt();
+        assert_eq!(cosine * cosine + x * x, arena.one());
+    }
+
+    #[test]
+    fn a_sum_of_constants_is_one_and_keeps_what_stands_for_them() {
+        let arena = Arena::new();
+        let [half, third] = [2, 3].map(|d| Number::ratio(Ratio::new(1, d).expect("a ratio")));
+        let one = Number::ONE;
+        let sum = arena.constant_sum([[half, third, one], [third, one, one]]);
+        assert_eq!(sum.as_number(), Some(half));
+        let own = Number::float(0.123_456);
+        arena.stand_for(own, "of_leg", 0);
+        let sum = arena.constant_sum([[half, own, one], [third, one, one]]);
+        assert_eq!(sum, arena.input("of_leg", 0) * half + arena.number(third));
     }
 }

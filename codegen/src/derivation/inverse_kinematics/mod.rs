@@ -16,6 +16,7 @@ mod polynomial;
 mod tests;
 
 use super::configuration::Configuration;
+use super::motion_input::MotionInput;
 use super::platform::PlatformPose;
 use crate::cas::{Arena, Direction, Expr, Matrix3, SymbolId, Vector3};
 use crate::mechanism::{End, Home, Leg, Mechanism};
@@ -101,6 +102,20 @@ impl<'a, 'm> Task<'a, 'm> {
             sum + joint(*symbol).unwrap_or(0.0) * factor.value()
         })
     }
+}
+
+/// For each leg the signs at home of the roots in its closed form. `None` if a leg has none.
+pub(crate) fn working_modes(mechanism: &Mechanism) -> Option<Vec<Vec<bool>>> {
+    let motion = mechanism.platform.as_ref()?.motion;
+    let arena = Arena::new();
+    let platform = PlatformPose::new(&arena, motion.of_pose(), &[]);
+    let of_leg = |leg| {
+        let task = Task::new(&arena, mechanism, leg, &platform)?;
+        let mut configuration = Configuration::new(&arena, mechanism, MotionInput::Pose);
+        solve_leg(task, &mut configuration)?;
+        Some(configuration.signs())
+    };
+    (0..mechanism.legs.len()).map(of_leg).collect()
 }
 
 /// Learns the leg's angles and slides from the pose. `None` if no rule fits the leg.

@@ -181,7 +181,7 @@ fn take<'a>(
         Step::Pair(first, second) => (pair(first, second), None),
         Step::Root(equation) => {
             let w = root_at_home(task, &equation, unknown)?;
-            let (unit, radicand) = root(task, equation, w);
+            let (unit, radicand) = root(task, equation, w, configuration);
             if let Some(radicand) = radicand {
                 let _ = named(radicand, "w_squared");
                 let _ = named(radicand.sqrt(), "w");
@@ -196,8 +196,10 @@ fn take<'a>(
             let (p, radicand) = completed(equation);
             let is_positive = task.home.joints[*index] + task.at_home(p) > 0.0;
             let _ = named(p, "middle");
-            let root = named(named(radicand, "w_squared").sqrt(), "w");
-            let position = if is_positive { root - p } else { -root - p };
+            let radicand = named(radicand, "w_squared");
+            let root = configuration.root(task.first_joint, task.home, radicand, is_positive);
+            let _ = named(radicand.sqrt(), "w");
+            let position = root - p;
             learn_slide(unknown, position, configuration);
             return Some(Some(Reach { radicand }));
         }
@@ -262,31 +264,34 @@ fn root<'a>(
     task: Task<'a, '_>,
     Linear { a, b, d }: Linear<'a>,
     w_at_home: f64,
+    configuration: &mut Configuration<'a>,
 ) -> ((Expr<'a>, Expr<'a>), Option<Expr<'a>>) {
-    let signed = |root: Expr<'a>, is_positive: bool| if is_positive { root } else { -root };
+    let mut root = |radicand: Expr<'a>, is_positive: bool| {
+        configuration.root(task.first_joint, task.home, radicand, is_positive)
+    };
     let is_positive = w_at_home > 0.0;
     if d.is_zero() {
         // w² = a² + b²: the turn is normal to (a, b).
-        let reciprocal = signed((a * a + b * b).sqrt(), is_positive).reciprocal();
+        let reciprocal = root(a * a + b * b, is_positive).reciprocal();
         return ((b * reciprocal, -a * reciprocal), None);
     }
     let one = task.arena.one();
     if a.is_zero() {
         let sine = d / b;
         let radicand = one - sine * sine;
-        let cosine = signed(radicand.sqrt(), is_positive == (task.at_home(b) > 0.0));
+        let cosine = root(radicand, is_positive == (task.at_home(b) > 0.0));
         return ((cosine, sine), Some(radicand));
     }
     if b.is_zero() {
         let cosine = d / a;
         let radicand = one - cosine * cosine;
-        let sine = signed(radicand.sqrt(), is_positive != (task.at_home(a) > 0.0));
+        let sine = root(radicand, is_positive != (task.at_home(a) > 0.0));
         return ((cosine, sine), Some(radicand));
     }
     let square = a * a + b * b;
     let reciprocal = square.reciprocal();
     let radicand = square - d * d;
-    let w = signed(radicand.sqrt(), is_positive);
+    let w = root(radicand, is_positive);
     let cosine = (a * d + b * w) * reciprocal;
     let sine = (b * d - a * w) * reciprocal;
     ((cosine, sine), Some(radicand))

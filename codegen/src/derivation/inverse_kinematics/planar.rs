@@ -119,15 +119,12 @@ fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
     let joint = &leg.joints[0];
     let (cg, sg) = joint.gamma.cosine_and_sine();
     let (ca, sa) = joint.alpha.cosine_and_sine();
-    let axis = [sg * sa, -(cg * sa), ca].map(|c| c * joint.r);
-    Vector3::constant(
-        arena,
-        [
-            joint.d * cg + axis[0],
-            joint.d * sg + axis[1],
-            joint.b + axis[2],
-        ],
-    )
+    let (d, r, one) = (joint.d, joint.r, Number::ONE);
+    Vector3([
+        arena.constant_sum([[d, cg, one], [sg, sa, r]]),
+        arena.constant_sum([[d, sg, one], [-cg, sa, r]]),
+        arena.constant_sum([[joint.b, one, one], [ca, r, one]]),
+    ])
 }
 
 /// Both links' unit vectors from the end's position in the plane.
@@ -147,11 +144,11 @@ fn two_links<'a>(
     // a = 1/2 + (l1² - l2²)/(2 ρ²), which is 1/2 for links of one length.
     let a = arena.number(half) + reciprocal * ((l1 * l1 - l2 * l2) * half);
     let radicand = named(reciprocal * (l1 * l1) - a * a, "h_squared");
-    let root = named(radicand.sqrt(), "h");
     // The bend from the first link to the second at home tells the elbow's side.
     let bend = second.direction.plus(&first.direction.negative())?;
-    let angle = task.turn_at_home(&bend);
-    let h = if angle.sin() > 0.0 { root } else { -root };
+    let is_positive = task.turn_at_home(&bend).sin() > 0.0;
+    let h = configuration.root(task.first_joint, task.home, radicand, is_positive);
+    let _ = named(radicand.sqrt(), "h");
     let (along, across) = ((x * a, y * a), (x * h, y * h));
     // The elbow lies to the right of D when the second link bends to the left.
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);

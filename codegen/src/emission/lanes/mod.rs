@@ -88,10 +88,46 @@ pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lan
         value: quote!(output),
         sections: Sections {
             function: function.name.clone(),
-            starts: shared.into_iter().chain(own).collect(),
+            starts: headings(lanes, shared, own),
         },
         names: body.names,
     }
+}
+
+/// The headings in the order of the statements: of what all share, of the tables, of what belongs to a leg, of the sums.
+fn headings(
+    lanes: &Lanes,
+    shared: Vec<(String, String)>,
+    own: Vec<(String, String)>,
+) -> Vec<(String, String)> {
+    let heading = |(name, text): (&str, &str)| (name.to_owned(), text.to_owned());
+    let (before, after) = match &lanes.gathered {
+        Gathered::Columns(_) => (None, None),
+        Gathered::Sums(sums) => (Some(sums::tables(sums)), Some(sums::SUMS)),
+    };
+    let used = lanes.program.used_inputs();
+    let inputs = lanes.program.inputs.iter().zip(&lanes.inputs).zip(used);
+    let arrays = inputs.filter_map(|((input, elements), is_used)| {
+        let text = match elements {
+            _ if !is_used => return None,
+            Elements::Shared => return None,
+            Elements::Constants => "numbers in which the legs differ, for the legs of this turn",
+            Elements::InTurn(_) => "the legs' own",
+            Elements::Scattered { .. } => {
+                "the legs' own: where the first leg's stands, and how far the next leg's is from it"
+            }
+        };
+        Some((input.name.as_str(), text))
+    });
+    let mut arrays: Vec<_> = arrays.collect();
+    arrays.dedup_by_key(|(_, text)| *text);
+    shared
+        .into_iter()
+        .chain(before.into_iter().flatten().map(heading))
+        .chain(arrays.into_iter().map(heading))
+        .chain(own)
+        .chain(after.map(heading))
+        .collect()
 }
 
 /// The turns in which the legs are gone through.
@@ -145,11 +181,17 @@ fn tables(lanes: &Lanes) -> TokenStream {
     let homes = homes.enumerate().filter_map(|(at, (guard, homes))| {
         let name = home(at);
         let homes = numbers(homes.clone());
-        matches!(guard.condition, Condition::Leg { .. })
-            .then(|| quote!(static #name: [::core::primitive::f64; #count] = #homes;))
+        matches!(guard.condition, Condition::Leg { .. }).then(|| {
+            quote! {
+                #[doc = " What must not vanish, at home."]
+                static #name: [::core::primitive::f64; #count] = #homes;
+            }
+        })
     });
     quote! {
+        #[doc = " Numbers in which the legs differ: a row for each, in it one for each leg."]
         static OF_LEG: [[::core::primitive::f64; #count]; #rows] = [#(#constants),*];
+        #[doc = " Names of the legs, for errors."]
         static LEGS: [&::core::primitive::str; #count] = [#(#legs),*];
         #(#homes)*
     }
@@ -175,8 +217,13 @@ fn arrays(lanes: &Lanes) -> TokenStream {
             Elements::Scattered { of, places } => {
                 let of = ident(&inputs[*of].name);
                 let places = places.iter().map(|place| {
-                    let [first, stride] = place.map(unsuffixed);
-                    quote!(::overact::lanes::scattered(#of, [#first, #stride], at))
+                    let [first, stride, count] =
+                        [place.first, place.stride, place.count].map(unsuffixed);
+                    let from = quote!(#of, [#first, #stride]);
+                    match place.count == lanes.legs.len() {
+                        true => quote!(::overact::lanes::scattered(#from, at)),
+                        false => quote!(::overact::lanes::scattered_of_first(#from, #count, at)),
+                    }
                 });
                 quote!(let #name = [#(#places),*];)
             }

@@ -130,11 +130,19 @@ impl<'a> Split<'a> {
                     let (column, value) = (unsuffixed(column), self.shared_writer.tokens(value));
                     of_all.push(quote!(output[#row][#column] = #value;));
                 }
-                Column::OfLegs { first, stride } => {
-                    let (first, stride) = (unsuffixed(first), unsuffixed(stride));
+                Column::OfLegs(place) => {
                     let value = self.own_writer.tokens(value);
-                    of_legs.push(quote! {
-                        ::overact::lanes::put(&mut output[#row], [#first, #stride], at, #value);
+                    let [first, stride, count] =
+                        [place.first, place.stride, place.count].map(unsuffixed);
+                    let row = quote!(&mut output[#row]);
+                    of_legs.push(match place.count == self.lanes.legs.len() {
+                        true => {
+                            quote!(::overact::lanes::put(#row, [#first, #stride], at, #value);)
+                        }
+                        false => {
+                            let place = quote!([#first, #stride]);
+                            quote!(::overact::lanes::put_of_first(#row, #place, #count, at, #value);)
+                        }
                     });
                 }
             }

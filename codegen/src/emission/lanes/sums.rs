@@ -15,6 +15,22 @@ use crate::writing::statement::Expression;
 use proc_macro2::TokenStream;
 use quote::quote;
 
+/// The heading of the sums.
+pub(super) const SUMS: (&str, &str) = ("sums", "what all share and what the legs add, added up");
+
+/// The headings of the tables that the legs fill.
+pub(super) fn tables(sums: &Sums) -> Vec<(&'static str, &'static str)> {
+    let added = (
+        "added",
+        "what the legs add: a row for each number, in it one for each leg",
+    );
+    let own = ("own", "what the legs need again when the sums are known");
+    match sums.rows {
+        LegRows::None => vec![added],
+        LegRows::Given(_) | LegRows::Times(_) => vec![added, own],
+    }
+}
+
 /// What stands around the statements of the legs of a function of sums.
 pub(super) fn parts(
     model: &RobotModel,

@@ -128,8 +128,8 @@ impl Draft<'_> {
         let (kept, columns) = kept_columns(&parameters, self.assembler.mechanism.legs.len())?;
         let mut places = vec![None; parameters.len()];
         for (at, column) in kept.into_iter().zip(columns) {
-            if let Column::OfLegs { stride, .. } = column {
-                places[at] = Some(stride);
+            if let Column::OfLegs(place) = column {
+                places[at] = Some(place);
             }
         }
         let elements = scatter(program, at, &places);

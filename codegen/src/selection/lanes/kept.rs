@@ -1,10 +1,11 @@
 //! Which columns or parameters of the first leg stand for those of all.
 
 use crate::derivation::BodyParameter;
-use crate::lowering::Column;
+use crate::lowering::{Column, OfLegs};
 
-/// Which columns of a function stay, and where they and those of the other legs stand. None if the legs' columns do
-/// not follow one another at a distance of their own.
+/// Which columns of a function stay, and where they and those of the other legs stand. Columns of the last legs may be
+/// missing, for an elimination keeps those of the first ones. None if the legs' columns do not follow one another at a
+/// distance of their own.
 pub(super) fn kept_columns(
     parameters: &[BodyParameter],
     legs: usize,
@@ -22,16 +23,60 @@ pub(super) fn kept_columns(
             let same = BodyParameter::Leg { leg, joint, symbol };
             parameters.iter().position(|other| *other == same)
         };
-        let stride = of(1)?.checked_sub(at)?;
-        if !(0..legs).all(|leg| of(leg) == Some(at + leg * stride)) {
+        let place = OfLegs {
+            first: at,
+            stride: match of(1) {
+                Some(next) => next.checked_sub(at)?,
+                None => 0,
+            },
+            count: (0..legs).take_while(|&leg| of(leg).is_some()).count(),
+        };
+        if !(0..legs).all(|leg| of(leg) == place.of(leg)) {
             return None;
         }
-        kept.push((at, Column::OfLegs { first: at, stride }));
+        kept.push((at, Column::OfLegs(place)));
     }
-    let of_first = kept
-        .iter()
-        .filter(|(_, column)| matches!(column, Column::OfLegs { .. }));
-    let shared = kept.len() - of_first.clone().count();
-    let whole = of_first.count() * legs + shared == parameters.len();
+    let counts = kept.iter().map(|(_, column)| match column {
+        Column::Shared(_) => 1,
+        Column::OfLegs(place) => place.count,
+    });
+    let whole = counts.sum::<usize>() == parameters.len();
     whole.then(|| kept.into_iter().unzip())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::kept_columns;
+    use crate::derivation::BodyParameter;
+    use crate::lowering::{Column, OfLegs};
+    use overact_core::StandardParameter as Symbol;
+
+    fn of(leg: usize, symbol: Symbol) -> BodyParameter {
+        BodyParameter::Leg {
+            leg,
+            joint: 0,
+            symbol,
+        }
+    }
+
+    #[test]
+    fn the_last_legs_may_lack_a_column_and_the_first_may_not() {
+        let masses = [0, 1, 2].map(|leg| of(leg, Symbol::M));
+        let offsets = [0, 1].map(|leg| of(leg, Symbol::Off));
+        let all = [&masses[..], &offsets[..]].concat();
+        let (kept, columns) = kept_columns(&all, 3).expect("regular columns");
+        assert_eq!(kept, [0, 3]);
+        let of_legs = |first, stride, count| {
+            Column::OfLegs(OfLegs {
+                first,
+                stride,
+                count,
+            })
+        };
+        assert_eq!(columns, [of_legs(0, 1, 3), of_legs(3, 1, 2)]);
+        let only_last = [&masses[..], &[of(2, Symbol::Off)]].concat();
+        assert_eq!(kept_columns(&only_last, 3), None);
+        let between = [&masses[..], &[of(0, Symbol::Off), of(2, Symbol::Off)]].concat();
+        assert_eq!(kept_columns(&between, 3), None);
+    }
 }

@@ -15,6 +15,7 @@ mod draft;
 mod fields;
 mod kept;
 mod outcome;
+mod stands;
 mod sums;
 mod template;
 
@@ -30,7 +31,10 @@ use template::Template;
 const TOO_LONG: usize = 32 * 1024 / 19;
 
 /// Operations of a straight program, times legs, from which four lanes win.
-const FEW: usize = 1320;
+const FEW: usize = 960;
+
+/// Those from which two lanes win where sums are what is computed, with four legs and more.
+const FEW_OF_SUMS: usize = 1440;
 
 /// The fewest legs that are worth it.
 const LEGS: usize = 3;
@@ -92,7 +96,7 @@ fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -
         | Function::ForwardDynamics(_) => match (from_joints, legs) {
             (true, _) => (TOO_LONG, 680),
             (false, 3) => (600, FEW / legs),
-            (false, _) => (FEW / legs, FEW / legs),
+            (false, _) => (FEW_OF_SUMS / legs, FEW / legs),
         },
         _ => return None,
     };

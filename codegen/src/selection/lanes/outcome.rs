@@ -83,10 +83,12 @@ fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<
         let found = value(&lanes.program, &|name| of_leg(lanes, leg, name, given))?;
         for (at, number) in found.into_iter().enumerate() {
             let column = match columns[at % columns.len()] {
-                Column::Shared(column) => column,
-                Column::OfLegs { first, stride } => first + leg * stride,
+                Column::Shared(column) => Some(column),
+                Column::OfLegs(place) => place.of(leg),
             };
-            output[at / columns.len() * width + column] = number;
+            if let Some(column) = column {
+                output[at / columns.len() * width + column] = number;
+            }
         }
     }
     Some(output)
@@ -172,10 +174,8 @@ pub(super) fn of_leg(lanes: &Lanes, leg: usize, name: &str, given: &Given<'_>) -
         }
         Elements::Scattered { of, places } => {
             let values = given(&inputs[*of].name)?;
-            let own = places
-                .iter()
-                .map(|[first, stride]| values[first + leg * stride]);
-            Some(own.collect())
+            let own = places.iter().map(|place| place.of(leg));
+            Some(own.map(|at| at.map_or(0.0, |at| values[at])).collect())
         }
     }
 }

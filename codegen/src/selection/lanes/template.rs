@@ -1,7 +1,9 @@
 //! A leg that stands for all legs of its kind: the numbers in which they differ are elements of an array.
 
 use super::fields::{angles, numbers};
-use crate::cas::{Angle, Arena, Number, Ratio, Stream};
+use super::stands::{Constant, Stands};
+use crate::cas::{Angle, Arena, InputElement, Number};
+use crate::derivation::working_modes;
 use crate::mechanism::{Leg, Mechanism};
 
 /// The name of the array.
@@ -16,15 +18,6 @@ pub(super) struct Template {
     constants: Vec<Constant>,
 }
 
-/// A number in which legs differ.
-#[derive(Debug)]
-struct Constant {
-    /// What stands for it.
-    number: Number,
-    /// What it is in each leg.
-    values: Vec<f64>,
-}
-
 impl Template {
     /// The template of a robot whose legs are all alike but for numbers.
     pub(super) fn of(mechanism: &Mechanism) -> Option<Self> {
@@ -34,38 +27,25 @@ impl Template {
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {
             return None;
         }
-        let mut constants = Vec::new();
-        let mut stream = Stream::new(11);
+        let mut stands = Stands::new();
         let mut legs = mechanism.legs.clone();
         let mut of_legs: Vec<_> = legs.iter_mut().map(numbers).collect();
         for at in 0..of_legs[0].len() {
-            let all: Vec<Number> = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            if let Some(number) = standing_number(&all, &mut stream) {
-                let values = all.iter().map(|number| number.value()).collect();
-                constants.push(Constant { number, values });
-                *of_legs[0][at] = number;
-            }
+            let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
+            *of_legs[0][at] = stands.number(all);
         }
         let mut of_legs: Vec<_> = legs.iter_mut().map(angles).collect();
         for at in 0..of_legs[0].len() {
-            let all: Vec<Angle> = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            if let Some(angle) = standing_angle(&all, &mut stream) {
-                let all: Vec<_> = all.iter().map(|angle| angle.cosine_and_sine()).collect();
-                let (cosine, sine) = angle.cosine_and_sine();
-                constants.push(Constant {
-                    number: cosine,
-                    values: all.iter().map(|(cosine, _)| cosine.value()).collect(),
-                });
-                constants.push(Constant {
-                    number: sine,
-                    values: all.iter().map(|(_, sine)| sine.value()).collect(),
-                });
-                *of_legs[0][at] = angle;
-            }
+            let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
+            *of_legs[0][at] = stands.angle(all)?;
         }
+        let mut constants = stands.constants;
         legs[0].name = name(&mechanism.legs);
+        let mut home = mechanism.home.clone();
+        home.signs = signs(mechanism, &mut constants);
         let mechanism = Mechanism {
             legs,
+            home,
             ..mechanism.clone()
         };
         Some(Self {
@@ -82,7 +62,10 @@ impl Template {
     /// Lets elements of the array stand for the numbers wherever they come up in a graph.
     pub(super) fn stand_in(&self, arena: &Arena) {
         for (index, constant) in self.constants.iter().enumerate() {
-            arena.stand_for(constant.number, ARRAY, index);
+            match constant.number {
+                Some(number) => arena.stand_for(number, ARRAY, index),
+                None => arena.let_be_sign(ARRAY, index),
+            }
         }
     }
 
@@ -90,6 +73,35 @@ impl Template {
     pub(super) fn values(&self, leg: usize) -> Vec<f64> {
         self.constants.iter().map(|c| c.values[leg]).collect()
     }
+}
+
+/// For the roots in the first leg's closed form the elements of the array that have their signs: where a leg is in another
+/// working mode, beside those of the first leg.
+fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<InputElement>> {
+    let Some(modes) = working_modes(mechanism) else {
+        return Vec::new();
+    };
+    let first = &modes[0];
+    if modes.iter().any(|mode| mode.len() != first.len()) {
+        return Vec::new();
+    }
+    let sign = |root: usize| {
+        let values = modes.iter().map(|mode| match mode[root] == first[root] {
+            true => 1.0,
+            false => -1.0,
+        });
+        let values: Vec<f64> = values.collect();
+        let index = constants.len();
+        values.contains(&-1.0).then(|| {
+            let number = None;
+            constants.push(Constant { number, values });
+            InputElement {
+                array: ARRAY,
+                index,
+            }
+        })
+    };
+    (0..first.len()).map(sign).collect()
 }
 
 /// What the leg that stands for all is called: as no leg is.
@@ -112,25 +124,4 @@ fn shape(leg: &Leg) -> String {
         *angle = Angle::ZERO;
     }
     format!("{leg:?}")
-}
-
-/// What stands for numbers that differ: one close to the first leg's, so that its working mode stays, and with no
-/// relation to any other.
-fn standing_number(all: &[Number], stream: &mut Stream) -> Option<Number> {
-    let first = all[0];
-    if all.iter().all(|number| *number == first) {
-        return None;
-    }
-    let near = 1e-3 * stream.number();
-    Some(Number::float(first.value() * (1.0 + near) + near))
-}
-
-/// What stands for angles that differ.
-fn standing_angle(all: &[Angle], stream: &mut Stream) -> Option<Angle> {
-    let first = all[0];
-    if all.iter().all(|angle| *angle == first) {
-        return None;
-    }
-    let near = (1e9 * stream.number()) as i128;
-    first.plus(Angle::radians(Ratio::new(near, 1_000_000_000_000)?))
 }

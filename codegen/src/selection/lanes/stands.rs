@@ -1,0 +1,156 @@
+//! Numbers and angles that stand for those in which legs differ.
+//!
+//! What stands for a leg's own number is close to the first leg's, so that its working mode stays, and has no relation
+//! to any other number. Relations that hold in every leg are kept: two numbers that are equal or opposite in all legs
+//! have one that stands for both, and so have two angles whose sum or difference is the same in all legs, such as an axis'
+//! direction and the offset that takes it back.
+
+use crate::cas::{Angle, Number, Ratio, Stream};
+
+/// A number in which legs differ.
+#[derive(Debug)]
+pub(super) struct Constant {
+    /// What stands for it; none if it is a sign.
+    pub(super) number: Option<Number>,
+    /// What it is in each leg.
+    pub(super) values: Vec<f64>,
+}
+
+/// What stands for what.
+#[derive(Debug)]
+pub(super) struct Stands {
+    /// All numbers that the legs have of their own.
+    pub(super) constants: Vec<Constant>,
+    stream: Stream,
+    /// What the legs have, and what stands for it.
+    numbers: Vec<(Vec<Number>, Number)>,
+    angles: Vec<(Vec<Angle>, Angle)>,
+}
+
+impl Stands {
+    pub(super) fn new() -> Self {
+        Self {
+            constants: Vec::new(),
+            stream: Stream::new(11),
+            numbers: Vec::new(),
+            angles: Vec::new(),
+        }
+    }
+
+    /// What stands for the legs' numbers; their own where all have the same.
+    pub(super) fn number(&mut self, all: Vec<Number>) -> Number {
+        let first = all[0];
+        if all.iter().all(|number| *number == first) {
+            return first;
+        }
+        let is = |others: &[Number], sign: fn(Number) -> Number| {
+            let mut both = all.iter().zip(others);
+            both.all(|(own, other)| *own == sign(*other))
+        };
+        let known = self.numbers.iter().find_map(|(others, number)| {
+            let same = is(others, |other| other).then_some(*number);
+            same.or_else(|| is(others, |other| -other).then(|| -*number))
+        });
+        known.unwrap_or_else(|| {
+            let near = 1e-3 * self.stream.number();
+            let number = Number::float(first.value() * (1.0 + near) + near);
+            let values = all.iter().map(|number| number.value()).collect();
+            self.add(number, values);
+            self.numbers.push((all, number));
+            number
+        })
+    }
+
+    /// What stands for the legs' angles; their own where all have the same.
+    pub(super) fn angle(&mut self, all: Vec<Angle>) -> Option<Angle> {
+        let first = all[0];
+        if all.iter().all(|angle| *angle == first) {
+            return Some(first);
+        }
+        let of_others = |(others, angle): &(Vec<Angle>, Angle)| {
+            let ahead = constant(&all, others, Angle::negative).and_then(|by| by.plus(*angle));
+            let back = || constant(&all, others, |other| other)?.plus(angle.negative());
+            ahead.or_else(back)
+        };
+        let known = self.angles.iter().find_map(of_others);
+        let angle = match known {
+            Some(angle) => angle,
+            None => {
+                // Whole nanoradians: sums of these are exact in the field.
+                let near = (1e6 * self.stream.number()) as i128;
+                first.plus(Angle::radians(Ratio::new(near, 1_000_000_000)?))?
+            }
+        };
+        let (cosine, sine) = angle.cosine_and_sine();
+        let of_legs = all.iter().map(|angle| angle.cosine_and_sine());
+        let (cosines, sines): (Vec<Number>, Vec<Number>) = of_legs.unzip();
+        for (number, of_legs) in [(cosine, cosines), (sine, sines)] {
+            self.add(
+                number,
+                of_legs.iter().map(|number| number.value()).collect(),
+            );
+        }
+        self.angles.push((all, angle));
+        Some(angle)
+    }
+
+    /// A number that stands for those of the legs, unless it or its negative does already.
+    fn add(&mut self, number: Number, values: Vec<f64>) {
+        let mut numbers = self.constants.iter().filter_map(|c| c.number);
+        if !numbers
+            .any(|other| other.image() == number.image() || (-other).image() == number.image())
+        {
+            let number = Some(number);
+            self.constants.push(Constant { number, values });
+        }
+    }
+}
+
+/// The angle by which the legs' angles differ from others, or from their negatives, if it is the same in all legs.
+fn constant(all: &[Angle], others: &[Angle], less: fn(Angle) -> Angle) -> Option<Angle> {
+    let mut both = all.iter().zip(others);
+    let difference = |(own, other): (&Angle, &Angle)| own.plus(less(*other));
+    let first = difference(both.next()?)?;
+    both.all(|both| difference(both) == Some(first))
+        .then_some(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stands;
+    use crate::cas::{Angle, Number, Ratio};
+
+    fn degrees(all: [i128; 2]) -> Vec<Angle> {
+        let ratio = |degrees: i128| Ratio::new(degrees, 1).expect("a ratio");
+        let angle = |degrees: i128| Angle::degrees(ratio(degrees)).expect("degrees");
+        all.map(angle).to_vec()
+    }
+
+    #[test]
+    fn what_is_equal_or_opposite_in_all_legs_stays_so() {
+        let mut stands = Stands::new();
+        let numbers = |all: [i64; 2]| all.map(Number::integer).to_vec();
+        let first = stands.number(numbers([11, -30]));
+        assert_ne!(first, Number::integer(11));
+        assert_eq!(stands.number(numbers([11, -30])), first);
+        assert_eq!(stands.number(numbers([-11, 30])), -first);
+        assert_ne!(stands.number(numbers([11, 30])), first);
+        assert_eq!(stands.number(numbers([2, 2])), Number::integer(2));
+        assert_eq!(stands.constants.len(), 2);
+    }
+
+    #[test]
+    fn angles_keep_sums_and_differences_that_all_legs_have() {
+        let mut stands = Stands::new();
+        let mut of = |all| stands.angle(degrees(all)).expect("an angle");
+        let first = of([15, 164]);
+        let sum = |a: Angle, b: Angle| a.plus(b).expect("a sum");
+        assert!(sum(first, of([-15, -164])).is_zero());
+        assert_eq!(sum(of([45, 194]), first.negative()), degrees([30, 30])[0]);
+        assert_eq!(sum(of([75, -74]), first), degrees([90, 90])[0]);
+        assert_eq!(of([7, 7]), degrees([7, 7])[0]);
+        // Cosine and sine of three that differ by more than a sign: of the first, of 30 and of 90 degrees less it.
+        let numbers = stands.constants.iter().filter_map(|c| c.number);
+        assert!(numbers.clone().count() <= 6, "{}", numbers.count());
+    }
+}
