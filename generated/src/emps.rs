@@ -2,7 +2,7 @@
 
 /// Electro-mechanical positioning system, one prismatic axis.
 ///
-/// 1 legs, 1 joints, 1 actuators, 1 degrees of freedom; 5 standard parameters, 4 base parameters.
+/// 1 leg, 1 joint, 1 actuator, 1 degree of freedom; 5 standard parameters, 4 base parameters.
 /// Source: Janot, Gautier, Brunot, Workshop on Nonlinear System Identification Benchmarks 2019.
 ///
 /// # Operations

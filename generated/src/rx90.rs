@@ -2,7 +2,7 @@
 
 /// Stäubli RX90, serial robot with six revolute joints.
 ///
-/// 1 legs, 6 joints, 6 actuators, 6 degrees of freedom; 73 standard parameters, 58 base parameters.
+/// 1 leg, 6 joints, 6 actuators, 6 degrees of freedom; 73 standard parameters, 58 base parameters.
 /// Source: Khalil and Dombre 2002, Modeling, Identification and Control of Robots; dynamics invented.
 ///
 /// # Operations
