@@ -1905,7 +1905,7 @@ impl DualV {
     ///
     /// 454 operations (153 additions, 288 multiplications, 13 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 50 negations, 288 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 126 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1942,6 +1942,10 @@ impl DualV {
             output[2][61] = a_y_platform;
             output[2][62] = -a_x_platform;
             /// Numbers in which the legs differ: a row for each, in it one for each leg.
+            /// 0: y of the end
+            /// 1: 0.41 * cos(gamma of `1`)
+            /// 2: 0.41 * sin(gamma of `1`)
+            /// 3: sign of a root in the closed form, beside that of `leg1`
             static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
                 [0.11, 0.11, -0.11, -0.11],
                 [
@@ -1981,9 +1985,9 @@ impl DualV {
                 let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
                 ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
                 let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-                let t1_leg = h_leg * of_leg[3];
-                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
-                let det_leg = rho_squared_leg * t1_leg;
+                let signed_h_leg = h_leg * of_leg[3];
+                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
+                let det_leg = rho_squared_leg * signed_h_leg;
                 ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
                 let minus_g2_vx_leg = l1_x_leg / det_leg;
                 let minus_gq2_vx_leg = d_x_leg / det_leg;
@@ -1991,7 +1995,7 @@ impl DualV {
                 let l2_x_leg = d_x_leg - l1_x_leg;
                 let a_arm_x_leg = of_leg[0] * my_platform_on_vx;
                 let a_end_x_leg = acceleration[0] + a_arm_x_leg;
-                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                 let l2_y_leg = d_y_leg - l1_y_leg;
                 let minus_a_arm_y_leg = of_leg[0] * minus_mx_platform_on_vx;
                 let a_end_y_leg = acceleration[1] - minus_a_arm_y_leg;
@@ -2008,8 +2012,8 @@ impl DualV {
                 let g1_vy_leg = l2_y_leg / det_leg;
                 let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
                 let rate_1_squared_leg = rate_1_leg * rate_1_leg;
-                let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
-                let rate_dot_1_leg = (minus_a_on_f1_leg + rate_1_squared_leg * t2_leg)
+                let t1_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+                let rate_dot_1_leg = (minus_a_on_f1_leg + rate_1_squared_leg * t1_leg)
                     / det_leg;
                 let zz_1_leg_on_vx = g1_vx_leg * rate_dot_1_leg;
                 let zz_1_leg_on_vy = g1_vy_leg * rate_dot_1_leg;
@@ -2017,13 +2021,13 @@ impl DualV {
                 let minus_zz_1_leg_on_wz = minus_g1_wz_leg * rate_dot_1_leg;
                 let a_on_f2_leg = l1_x_leg * a_end_x_leg + l1_y_leg * a_end_y_leg
                     + L_AB_SQUARED * rate_1_squared_leg;
-                let minus_rate_dot_2_leg = (a_on_f2_leg + rate_2_squared_leg * t2_leg)
+                let minus_rate_dot_2_leg = (a_on_f2_leg + rate_2_squared_leg * t1_leg)
                     / det_leg;
                 let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                     + p_y_leg * minus_g2_vx_leg;
                 let v2_by_1_x_leg = INV_L_AB * det_leg;
-                let v2_by_1_y_leg = t2_leg * INV_L_AB;
-                let t3_leg = rate_2_squared_leg * v2_by_1_x_leg
+                let v2_by_1_y_leg = t1_leg * INV_L_AB;
+                let t2_leg = rate_2_squared_leg * v2_by_1_x_leg
                     + minus_rate_dot_2_leg * v2_by_1_y_leg;
                 let a2_y_leg = rate_1_squared_leg * v2_by_1_x_leg
                     + rate_dot_1_leg * v2_by_1_y_leg;
@@ -2060,7 +2064,7 @@ impl DualV {
                     &mut output[0],
                     [6, 15],
                     at,
-                    -(g1_vx_leg * t3_leg + minus_g2_vx_leg * a2_y_leg),
+                    -(g1_vx_leg * t2_leg + minus_g2_vx_leg * a2_y_leg),
                 );
                 ::overact::lanes::put(
                     &mut output[0],
@@ -2125,7 +2129,7 @@ impl DualV {
                     &mut output[1],
                     [6, 15],
                     at,
-                    -(g1_vy_leg * t3_leg + minus_g2_vy_leg * a2_y_leg),
+                    -(g1_vy_leg * t2_leg + minus_g2_vy_leg * a2_y_leg),
                 );
                 ::overact::lanes::put(
                     &mut output[1],
@@ -2200,7 +2204,7 @@ impl DualV {
                     &mut output[2],
                     [6, 15],
                     at,
-                    minus_g1_wz_leg * t3_leg + g2_wz_leg * a2_y_leg,
+                    minus_g1_wz_leg * t2_leg + g2_wz_leg * a2_y_leg,
                 );
                 ::overact::lanes::put(
                     &mut output[2],
@@ -4844,7 +4848,7 @@ impl DualV {
     ///
     /// 398 operations (127 additions, 263 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 42 negations, 265 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 107 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4882,6 +4886,10 @@ impl DualV {
             output[2][1] = a_y_platform;
             output[2][2] = -a_x_platform;
             /// Numbers in which the legs differ: a row for each, in it one for each leg.
+            /// 0: y of the end
+            /// 1: 0.41 * cos(gamma of `1`)
+            /// 2: 0.41 * sin(gamma of `1`)
+            /// 3: sign of a root in the closed form, beside that of `leg1`
             static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
                 [0.11, 0.11, -0.11, -0.11],
                 [
@@ -4920,16 +4928,16 @@ impl DualV {
                 let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
                 ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
                 let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-                let t1_leg = h_leg * of_leg[3];
-                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+                let signed_h_leg = h_leg * of_leg[3];
+                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                 let l2_x_leg = d_x_leg - l1_x_leg;
-                let det_leg = rho_squared_leg * t1_leg;
+                let det_leg = rho_squared_leg * signed_h_leg;
                 ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
                 let k1_leg = 1.0 / det_leg;
                 let g1_vx_leg = l2_x_leg * k1_leg;
                 let a_arm_x_leg = my_platform_on_vx * of_leg[0];
                 let a_end_x_leg = acceleration[0] + a_arm_x_leg;
-                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                 let l2_y_leg = d_y_leg - l1_y_leg;
                 let minus_a_arm_y_leg = minus_mx_platform_on_vx * of_leg[0];
                 let a_end_y_leg = acceleration[1] - minus_a_arm_y_leg;
@@ -4947,14 +4955,14 @@ impl DualV {
                 let g1_vy_leg = l2_y_leg * k1_leg;
                 let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
                 let rate_1_squared_leg = rate_1_leg * rate_1_leg;
-                let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+                let t1_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
                 let rate_dot_1_leg = k1_leg
-                    * (minus_a_on_f1_leg + rate_1_squared_leg * t2_leg);
+                    * (minus_a_on_f1_leg + rate_1_squared_leg * t1_leg);
                 let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
                 let a_on_f2_leg = l1_x_leg * a_end_x_leg + l1_y_leg * a_end_y_leg
                     + L_AB_SQUARED * rate_1_squared_leg;
                 let minus_rate_dot_2_leg = k1_leg
-                    * (a_on_f2_leg + rate_2_squared_leg * t2_leg);
+                    * (a_on_f2_leg + rate_2_squared_leg * t1_leg);
                 let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                     + p_y_leg * minus_g2_vx_leg;
                 let inv_l_ab_a_on_f2_leg = INV_L_AB * a_on_f2_leg;
@@ -8304,7 +8312,7 @@ impl DualV {
     ///
     /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 575 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 141 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8332,16 +8340,16 @@ impl DualV {
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let [(s_phi, c_phi)] = ::overact::math::sin_cos_all([pose[2]]);
         let rate_3_squared_leg = twist[2] * twist[2];
-        let t2_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
-        let t3_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
+        let t1_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
+        let t2_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
         // --- platform
         let mass_platform = parameters[63] + parameters[67];
         let first_y_platform = parameters[62] + parameters[66];
         let first_x_platform = parameters[61] + parameters[65];
         let force_x_platform = acceleration[0] * mass_platform
-            + t2_leg * first_y_platform - t3_leg * first_x_platform;
+            + t1_leg * first_y_platform - t2_leg * first_x_platform;
         let force_y_platform = acceleration[1] * mass_platform
-            - (t2_leg * first_x_platform + t3_leg * first_y_platform);
+            - (t1_leg * first_x_platform + t2_leg * first_y_platform);
         let inertia_zz_platform = parameters[60] + parameters[64];
         let moment_z_platform = acceleration[1]
             * (c_phi * first_x_platform - s_phi * first_y_platform)
@@ -8352,6 +8360,10 @@ impl DualV {
         // --- what the legs need again when the sums are known
         let mut own = [[0.0; 4]; 3];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -8408,21 +8420,21 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let l2_y_leg = d_y_leg - l1_y_leg;
             let g1_vy_leg = l2_y_leg * k1_leg;
             let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
             let s2_leg = INV_L_AB_SQUARED * det_leg;
-            let a_arm_x_leg = of_leg[0] * t2_leg;
+            let a_arm_x_leg = of_leg[0] * t1_leg;
             let a_end_x_leg = acceleration[0] + a_arm_x_leg;
-            let minus_a_arm_y_leg = of_leg[0] * t3_leg;
+            let minus_a_arm_y_leg = of_leg[0] * t2_leg;
             let a_end_y_leg = acceleration[1] - minus_a_arm_y_leg;
             let minus_v_arm_x_leg = p_y_leg * twist[2];
             let v_end_x_leg = twist[0] - minus_v_arm_x_leg;
@@ -8439,8 +8451,8 @@ impl DualV {
                 + minus_g2_vy_leg * v_end_y_leg;
             let rate_2_squared_leg = minus_rate_2_leg * minus_rate_2_leg;
             let l_ab_squared_rate_2_squared_leg = L_AB_SQUARED * rate_2_squared_leg;
-            let t4_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
-            let c2_leg = 6.377551020408164 * t4_leg;
+            let t3_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
+            let c2_leg = 6.377551020408164 * t3_leg;
             let minus_rate_dot_2_leg = k1_leg
                 * (a_on_f2_leg + l_ab_squared_rate_2_squared_leg * c2_leg);
             let force2_x_leg = own_parameters[0] * minus_rate_dot_2_leg
@@ -8451,7 +8463,7 @@ impl DualV {
                 + l_ab_squared_rate_2_squared_leg;
             let rate_dot_1_leg = k1_leg
                 * (minus_a_on_f1_leg + l_ab_squared_rate_1_squared_leg * c2_leg);
-            let t5_leg = own_parameters[4]
+            let t4_leg = own_parameters[4]
                 + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                 + own_parameters[2] * rate_1_leg
                 + ::overact::lanes::signed(own_parameters[3], rate_1_leg, at)
@@ -8462,9 +8474,9 @@ impl DualV {
             let tau_2_leg = own_parameters[10]
                 - (own_parameters[8] * minus_qd_2_leg
                     + ::overact::lanes::signed(own_parameters[9], minus_qd_2_leg, at));
-            let force_on_u1_leg = t5_leg - tau_2_leg;
+            let force_on_u1_leg = t4_leg - tau_2_leg;
             let a2_y_leg = INV_L_AB * (det_leg * rate_1_squared_leg)
-                + 1.7857142857142858 * (t4_leg * rate_dot_1_leg);
+                + 1.7857142857142858 * (t3_leg * rate_dot_1_leg);
             let a2_x_leg = INV_L_AB * minus_a_on_f1_leg;
             let moment2_z_leg = own_parameters[1] * a2_y_leg
                 - own_parameters[0] * a2_x_leg
@@ -9381,7 +9393,7 @@ impl DualV {
     ///
     /// 490 operations (217 additions, 259 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 492 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 121 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9405,16 +9417,16 @@ impl DualV {
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let [(s_phi, c_phi)] = ::overact::math::sin_cos_all([pose[2]]);
         let rate_3_squared_leg = twist[2] * twist[2];
-        let t2_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
-        let t3_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
+        let t1_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
+        let t2_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
         // --- platform
         let mass_platform = base_parameters[3] + base_parameters[52];
         let first_y_platform = base_parameters[2] + base_parameters[51];
         let first_x_platform = base_parameters[1] + base_parameters[50];
         let force_x_platform = acceleration[0] * mass_platform
-            + t2_leg * first_y_platform - t3_leg * first_x_platform;
+            + t1_leg * first_y_platform - t2_leg * first_x_platform;
         let force_y_platform = acceleration[1] * mass_platform
-            - (t2_leg * first_x_platform + t3_leg * first_y_platform);
+            - (t1_leg * first_x_platform + t2_leg * first_y_platform);
         let inertia_zz_platform = base_parameters[0] + base_parameters[49];
         let moment_z_platform = acceleration[1]
             * (c_phi * first_x_platform - s_phi * first_y_platform)
@@ -9425,6 +9437,10 @@ impl DualV {
         // --- what the legs need again when the sums are known
         let mut own = [[0.0; 4]; 3];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -9478,20 +9494,20 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let l2_y_leg = d_y_leg - l1_y_leg;
             let g1_vy_leg = l2_y_leg * k1_leg;
             let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
-            let a_arm_x_leg = of_leg[0] * t2_leg;
+            let a_arm_x_leg = of_leg[0] * t1_leg;
             let a_end_x_leg = acceleration[0] + a_arm_x_leg;
-            let minus_a_arm_y_leg = of_leg[0] * t3_leg;
+            let minus_a_arm_y_leg = of_leg[0] * t2_leg;
             let a_end_y_leg = acceleration[1] - minus_a_arm_y_leg;
             let minus_g2_vx_leg = l1_x_leg * k1_leg;
             let minus_v_arm_x_leg = p_y_leg * twist[2];
@@ -9506,12 +9522,12 @@ impl DualV {
                 + L_AB_SQUARED * rate_2_squared_leg;
             let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
             let rate_1_squared_leg = rate_1_leg * rate_1_leg;
-            let t4_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+            let t3_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg = k1_leg
-                * (minus_a_on_f1_leg + rate_1_squared_leg * t4_leg);
+                * (minus_a_on_f1_leg + rate_1_squared_leg * t3_leg);
             let a_on_f2_leg = l1_x_leg * a_end_x_leg + l1_y_leg * a_end_y_leg
                 + L_AB_SQUARED * rate_1_squared_leg;
-            let t5_leg = own_base_parameters[1] * INV_L_AB;
+            let t4_leg = own_base_parameters[1] * INV_L_AB;
             let tau_1_leg = own_base_parameters[2] * rate_1_leg
                 + ::overact::lanes::signed(own_base_parameters[3], rate_1_leg, at)
                 + own_base_parameters[4];
@@ -9524,11 +9540,11 @@ impl DualV {
                         at,
                     ));
             let force_on_u1_leg = own_base_parameters[0] * rate_dot_1_leg
-                + a_on_f2_leg * t5_leg + tau_1_leg - tau_2_leg;
+                + a_on_f2_leg * t4_leg + tau_1_leg - tau_2_leg;
             let minus_rate_dot_2_leg = k1_leg
-                * (a_on_f2_leg + rate_2_squared_leg * t4_leg);
+                * (a_on_f2_leg + rate_2_squared_leg * t3_leg);
             let minus_moment2_z_leg = own_base_parameters[8] * minus_rate_dot_2_leg
-                + minus_a_on_f1_leg * t5_leg;
+                + minus_a_on_f1_leg * t4_leg;
             let qd_3_leg = minus_rate_2_leg + twist[2];
             let tau_3_leg = own_base_parameters[9] * qd_3_leg
                 + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
@@ -10358,7 +10374,7 @@ impl DualV {
     ///
     /// 323 operations (136 additions, 176 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 323 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 4 legs run side by side, in the lanes of vectors: 15 operations once, and 83 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10385,6 +10401,10 @@ impl DualV {
             // --- what the legs add: a row for each number, in it one for each leg
             let mut added = [[0.0; 4]; 6];
             /// Numbers in which the legs differ: a row for each, in it one for each leg.
+            /// 0: y of the end
+            /// 1: 0.41 * cos(gamma of `1`)
+            /// 2: 0.41 * sin(gamma of `1`)
+            /// 3: sign of a root in the closed form, beside that of `leg1`
             static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
                 [0.11, 0.11, -0.11, -0.11],
                 [
@@ -10433,10 +10453,10 @@ impl DualV {
                 let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
                 ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
                 let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-                let t1_leg = h_leg * of_leg[3];
-                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+                let signed_h_leg = h_leg * of_leg[3];
+                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                 let l2_x_leg = d_x_leg - l1_x_leg;
-                let det_leg = rho_squared_leg * t1_leg;
+                let det_leg = rho_squared_leg * signed_h_leg;
                 ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
                 let g1_vx_leg = l2_x_leg / det_leg;
                 let masses_leg_1_1 = own_parameters[1] + L_AB_SQUARED * own_parameters[0]
@@ -10447,20 +10467,20 @@ impl DualV {
                 let force1_y_by_2_leg = c2_leg * own_parameters[3]
                     - s2_leg * own_parameters[4];
                 let masses_leg_1_2 = L_AB * force1_y_by_2_leg;
-                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                 let l2_y_leg = d_y_leg - l1_y_leg;
                 let g1_vy_leg = l2_y_leg / det_leg;
                 let minus_g2_vy_leg = l1_y_leg / det_leg;
-                let t2_leg = g1_vy_leg * masses_leg_1_1
+                let t1_leg = g1_vy_leg * masses_leg_1_1
                     - minus_g2_vy_leg * masses_leg_1_2;
-                let t3_leg = g1_vy_leg * masses_leg_1_2
+                let t2_leg = g1_vy_leg * masses_leg_1_2
                     - minus_g2_vy_leg * own_parameters[5];
                 let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                     + p_y_leg * minus_g2_vx_leg;
                 let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
-                let t4_leg = g2_wz_leg * masses_leg_1_2
+                let t3_leg = g2_wz_leg * masses_leg_1_2
                     - minus_g1_wz_leg * masses_leg_1_1;
-                let t5_leg = g2_wz_leg * own_parameters[5]
+                let t4_leg = g2_wz_leg * own_parameters[5]
                     - minus_g1_wz_leg * masses_leg_1_2;
                 failed.told()?;
                 ::overact::lanes::put(
@@ -10477,31 +10497,31 @@ impl DualV {
                     &mut added[1],
                     [0, 1],
                     at,
-                    g1_vx_leg * t2_leg - minus_g2_vx_leg * t3_leg,
+                    g1_vx_leg * t1_leg - minus_g2_vx_leg * t2_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[2],
                     [0, 1],
                     at,
-                    g1_vx_leg * t4_leg - minus_g2_vx_leg * t5_leg,
+                    g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[3],
                     [0, 1],
                     at,
-                    g1_vy_leg * t2_leg - minus_g2_vy_leg * t3_leg,
+                    g1_vy_leg * t1_leg - minus_g2_vy_leg * t2_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[4],
                     [0, 1],
                     at,
-                    g1_vy_leg * t4_leg - minus_g2_vy_leg * t5_leg,
+                    g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[5],
                     [0, 1],
                     at,
-                    g2_wz_leg * t5_leg - minus_g1_wz_leg * t4_leg,
+                    g2_wz_leg * t4_leg - minus_g1_wz_leg * t3_leg,
                 );
             }
             // --- what all share and what the legs add, added up
@@ -10740,7 +10760,7 @@ impl DualV {
     ///
     /// 297 operations (119 additions, 170 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 297 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 4 legs run side by side, in the lanes of vectors: 15 operations once, and 86 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10771,6 +10791,10 @@ impl DualV {
             // --- what the legs add: a row for each number, in it one for each leg
             let mut added = [[0.0; 4]; 6];
             /// Numbers in which the legs differ: a row for each, in it one for each leg.
+            /// 0: y of the end
+            /// 1: 0.41 * cos(gamma of `1`)
+            /// 2: 0.41 * sin(gamma of `1`)
+            /// 3: sign of a root in the closed form, beside that of `leg1`
             static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
                 [0.11, 0.11, -0.11, -0.11],
                 [
@@ -10816,10 +10840,10 @@ impl DualV {
                 let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
                 ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
                 let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-                let t1_leg = h_leg * of_leg[3];
-                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+                let signed_h_leg = h_leg * of_leg[3];
+                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                 let l2_x_leg = d_x_leg - l1_x_leg;
-                let det_leg = rho_squared_leg * t1_leg;
+                let det_leg = rho_squared_leg * signed_h_leg;
                 ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
                 let k1_leg = 1.0 / det_leg;
                 let g1_vx_leg = l2_x_leg * k1_leg;
@@ -10830,9 +10854,9 @@ impl DualV {
                 let c1_leg = INV_L_AB * l1_x_leg;
                 let c2_leg = 6.377551020408164 * (rho_squared_leg - TWICE_L_AB_SQUARED);
                 let first1_y_leg = c2_leg * own_base_parameters[1];
-                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                 let s1_leg = INV_L_AB * l1_y_leg;
-                let t2_leg = g1_vx_leg
+                let t1_leg = g1_vx_leg
                     * (g1_vx_leg * own_base_parameters[0]
                         + minus_g2_vx_leg * minus_masses_leg_1_2)
                     + minus_g2_vx_leg
@@ -10841,48 +10865,48 @@ impl DualV {
                 let l2_y_leg = d_y_leg - l1_y_leg;
                 let g1_vy_leg = l2_y_leg * k1_leg;
                 let minus_g2_vy_leg = l1_y_leg * k1_leg;
-                let t3_leg = g1_vy_leg * own_base_parameters[0]
+                let t2_leg = g1_vy_leg * own_base_parameters[0]
                     + minus_g2_vy_leg * minus_masses_leg_1_2;
-                let t4_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
+                let t3_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
                     + minus_g2_vy_leg * own_base_parameters[2];
                 let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
                 let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                     + p_y_leg * minus_g2_vx_leg;
-                let t5_leg = minus_g1_wz_leg * own_base_parameters[0]
+                let t4_leg = minus_g1_wz_leg * own_base_parameters[0]
                     + g2_wz_leg * minus_masses_leg_1_2;
-                let t6_leg = minus_g1_wz_leg * minus_masses_leg_1_2
+                let t5_leg = minus_g1_wz_leg * minus_masses_leg_1_2
                     + g2_wz_leg * own_base_parameters[2];
                 failed.told()?;
-                ::overact::lanes::put(&mut added[0], [0, 1], at, t2_leg);
+                ::overact::lanes::put(&mut added[0], [0, 1], at, t1_leg);
                 ::overact::lanes::put(
                     &mut added[1],
                     [0, 1],
                     at,
-                    g1_vx_leg * t3_leg + minus_g2_vx_leg * t4_leg,
+                    g1_vx_leg * t2_leg + minus_g2_vx_leg * t3_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[2],
                     [0, 1],
                     at,
-                    -(g1_vx_leg * t5_leg + minus_g2_vx_leg * t6_leg),
+                    -(g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg),
                 );
                 ::overact::lanes::put(
                     &mut added[3],
                     [0, 1],
                     at,
-                    g1_vy_leg * t3_leg + minus_g2_vy_leg * t4_leg,
+                    g1_vy_leg * t2_leg + minus_g2_vy_leg * t3_leg,
                 );
                 ::overact::lanes::put(
                     &mut added[4],
                     [0, 1],
                     at,
-                    -(g1_vy_leg * t5_leg + minus_g2_vy_leg * t6_leg),
+                    -(g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg),
                 );
                 ::overact::lanes::put(
                     &mut added[5],
                     [0, 1],
                     at,
-                    minus_g1_wz_leg * t5_leg + g2_wz_leg * t6_leg,
+                    minus_g1_wz_leg * t4_leg + g2_wz_leg * t5_leg,
                 );
             }
             // --- what all share and what the legs add, added up
@@ -11124,7 +11148,7 @@ impl DualV {
     ///
     /// 461 operations (197 additions, 256 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 464 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 122 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11159,6 +11183,10 @@ impl DualV {
         // --- what the legs add: a row for each number, in it one for each leg
         let mut added = [[0.0; 4]; 3];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -11215,16 +11243,16 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
             let minus_v_arm_x_leg = p_y_leg * twist[2];
             let v_end_x_leg = twist[0] - minus_v_arm_x_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let l2_y_leg = d_y_leg - l1_y_leg;
             let g1_vy_leg = l2_y_leg * k1_leg;
             let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -11237,8 +11265,8 @@ impl DualV {
             let l_ab_squared_rate_1_squared_leg = L_AB_SQUARED * rate_1_squared_leg;
             let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                 - l1_y_leg * minus_bias_a_end_y_leg + l_ab_squared_rate_1_squared_leg;
-            let t2_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
-            let c2_leg = 6.377551020408164 * t2_leg;
+            let t1_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
+            let c2_leg = 6.377551020408164 * t1_leg;
             let minus_g2_vx_leg = l1_x_leg * k1_leg;
             let minus_g2_vy_leg = l1_y_leg * k1_leg;
             let minus_rate_2_leg = minus_g2_vx_leg * v_end_x_leg
@@ -11255,7 +11283,7 @@ impl DualV {
                 - l2_x_leg * bias_a_end_x_leg - l_ab_squared_rate_2_squared_leg;
             let minus_bias_rate_dot_1_leg = k1_leg
                 * (bias_a_on_f1_leg - l_ab_squared_rate_1_squared_leg * c2_leg);
-            let t3_leg = own_parameters[4]
+            let t2_leg = own_parameters[4]
                 + ::overact::lanes::signed(own_parameters[0], rate_1_leg, at)
                 + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                 + own_parameters[3] * rate_1_leg
@@ -11266,9 +11294,9 @@ impl DualV {
             let tau_2_leg = own_parameters[10]
                 - (own_parameters[8] * minus_qd_2_leg
                     + ::overact::lanes::signed(own_parameters[9], minus_qd_2_leg, at));
-            let force_on_u1_leg = t3_leg - tau_2_leg;
+            let force_on_u1_leg = t2_leg - tau_2_leg;
             let bias_a2_y_leg = INV_L_AB * (det_leg * rate_1_squared_leg)
-                - 1.7857142857142858 * (t2_leg * minus_bias_rate_dot_1_leg);
+                - 1.7857142857142858 * (t1_leg * minus_bias_rate_dot_1_leg);
             let minus_bias_a2_x_leg = INV_L_AB * bias_a_on_f1_leg;
             let moment2_z_leg = own_parameters[2] * bias_a2_y_leg
                 + own_parameters[1] * minus_bias_a2_x_leg
@@ -11321,7 +11349,7 @@ impl DualV {
     ///
     /// 378 operations (166 additions, 204 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 381 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 102 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11352,6 +11380,10 @@ impl DualV {
         // --- what the legs add: a row for each number, in it one for each leg
         let mut added = [[0.0; 4]; 3];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -11405,16 +11437,16 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
             let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
             let bias_a_end_x_leg = twist[2] * minus_v_arm_y_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let minus_v_arm_x_leg = p_y_leg * twist[2];
             let minus_bias_a_end_y_leg = twist[2] * minus_v_arm_x_leg;
             let v_end_x_leg = twist[0] - minus_v_arm_x_leg;
@@ -11425,7 +11457,7 @@ impl DualV {
             let rate_1_squared_leg = rate_1_leg * rate_1_leg;
             let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                 - l1_y_leg * minus_bias_a_end_y_leg + L_AB_SQUARED * rate_1_squared_leg;
-            let t2_leg = own_base_parameters[0] * INV_L_AB;
+            let t1_leg = own_base_parameters[0] * INV_L_AB;
             let minus_g2_vx_leg = l1_x_leg * k1_leg;
             let minus_g2_vy_leg = l1_y_leg * k1_leg;
             let minus_rate_2_leg = minus_g2_vx_leg * v_end_x_leg
@@ -11433,9 +11465,9 @@ impl DualV {
             let rate_2_squared_leg = minus_rate_2_leg * minus_rate_2_leg;
             let bias_a_on_f1_leg = l2_y_leg * minus_bias_a_end_y_leg
                 - l2_x_leg * bias_a_end_x_leg - L_AB_SQUARED * rate_2_squared_leg;
-            let t3_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+            let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
             let minus_bias_rate_dot_1_leg = k1_leg
-                * (bias_a_on_f1_leg - rate_1_squared_leg * t3_leg);
+                * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
             let tau_1_leg = own_base_parameters[2] * rate_1_leg
                 + ::overact::lanes::signed(own_base_parameters[3], rate_1_leg, at)
                 + own_base_parameters[4];
@@ -11447,12 +11479,12 @@ impl DualV {
                         minus_qd_2_leg,
                         at,
                     ));
-            let force_on_u1_leg = bias_a_on_f2_leg * t2_leg
+            let force_on_u1_leg = bias_a_on_f2_leg * t1_leg
                 - own_base_parameters[1] * minus_bias_rate_dot_1_leg + tau_1_leg
                 - tau_2_leg;
             let minus_bias_rate_dot_2_leg = k1_leg
-                * (bias_a_on_f2_leg + rate_2_squared_leg * t3_leg);
-            let moment2_z_leg = bias_a_on_f1_leg * t2_leg
+                * (bias_a_on_f2_leg + rate_2_squared_leg * t2_leg);
+            let moment2_z_leg = bias_a_on_f1_leg * t1_leg
                 - own_base_parameters[8] * minus_bias_rate_dot_2_leg;
             let qd_3_leg = minus_rate_2_leg + twist[2];
             let tau_3_leg = own_base_parameters[9] * qd_3_leg
@@ -11503,7 +11535,7 @@ impl DualV {
     ///
     /// 707 operations (298 additions, 382 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 710 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 169 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11542,6 +11574,10 @@ impl DualV {
         // --- what the legs add: a row for each number, in it one for each leg
         let mut added = [[0.0; 4]; 9];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -11600,33 +11636,33 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
             let masses_leg_1_1 = own_parameters[1] + L_AB_SQUARED * own_parameters[0]
                 + own_parameters[2];
             let minus_g2_vx_leg = l1_x_leg * k1_leg;
-            let t2_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
-            let c2_leg = 6.377551020408164 * t2_leg;
+            let t1_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
+            let c2_leg = 6.377551020408164 * t1_leg;
             let s2_leg = INV_L_AB_SQUARED * det_leg;
             let force1_y_by_2_leg = c2_leg * own_parameters[3]
                 - s2_leg * own_parameters[4];
             let masses_leg_1_2 = L_AB * force1_y_by_2_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let l2_y_leg = d_y_leg - l1_y_leg;
             let g1_vy_leg = l2_y_leg * k1_leg;
             let minus_g2_vy_leg = l1_y_leg * k1_leg;
-            let t3_leg = g1_vy_leg * masses_leg_1_1 - minus_g2_vy_leg * masses_leg_1_2;
-            let t4_leg = g1_vy_leg * masses_leg_1_2
+            let t2_leg = g1_vy_leg * masses_leg_1_1 - minus_g2_vy_leg * masses_leg_1_2;
+            let t3_leg = g1_vy_leg * masses_leg_1_2
                 - minus_g2_vy_leg * own_parameters[5];
             let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg + p_y_leg * minus_g2_vx_leg;
             let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
-            let t5_leg = g2_wz_leg * masses_leg_1_2 - minus_g1_wz_leg * masses_leg_1_1;
-            let t6_leg = g2_wz_leg * own_parameters[5]
+            let t4_leg = g2_wz_leg * masses_leg_1_2 - minus_g1_wz_leg * masses_leg_1_1;
+            let t5_leg = g2_wz_leg * own_parameters[5]
                 - minus_g1_wz_leg * masses_leg_1_2;
             let minus_v_arm_x_leg = p_y_leg * twist[2];
             let v_end_x_leg = twist[0] - minus_v_arm_x_leg;
@@ -11646,7 +11682,7 @@ impl DualV {
             let minus_bias_rate_dot_1_leg = k1_leg
                 * (bias_a_on_f1_leg - c2_leg * l_ab_squared_rate_1_squared_leg);
             let bias_a2_y_leg = INV_L_AB * (det_leg * rate_1_squared_leg)
-                - 1.7857142857142858 * (t2_leg * minus_bias_rate_dot_1_leg);
+                - 1.7857142857142858 * (t1_leg * minus_bias_rate_dot_1_leg);
             let minus_bias_a2_x_leg = INV_L_AB * bias_a_on_f1_leg;
             let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                 - l1_y_leg * minus_bias_a_end_y_leg + l_ab_squared_rate_1_squared_leg;
@@ -11668,11 +11704,11 @@ impl DualV {
                 - own_parameters[3] * rate_2_squared_leg;
             let minus_force2_y_leg = own_parameters[3] * minus_bias_rate_dot_2_leg
                 + own_parameters[4] * rate_2_squared_leg;
-            let t7_leg = ::overact::lanes::signed(own_parameters[12], rate_1_leg, at)
+            let t6_leg = ::overact::lanes::signed(own_parameters[12], rate_1_leg, at)
                 + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                 + own_parameters[13] * rate_1_leg + own_parameters[14]
                 - masses_leg_1_1 * minus_bias_rate_dot_1_leg;
-            let force_on_u1_leg = t7_leg - tau_2_leg;
+            let force_on_u1_leg = t6_leg - tau_2_leg;
             let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
             failed.told()?;
             ::overact::lanes::put(
@@ -11689,31 +11725,31 @@ impl DualV {
                 &mut added[1],
                 [0, 1],
                 at,
-                g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
+                g1_vx_leg * t2_leg - minus_g2_vx_leg * t3_leg,
             );
             ::overact::lanes::put(
                 &mut added[2],
                 [0, 1],
                 at,
-                g1_vx_leg * t5_leg - minus_g2_vx_leg * t6_leg,
+                g1_vx_leg * t4_leg - minus_g2_vx_leg * t5_leg,
             );
             ::overact::lanes::put(
                 &mut added[3],
                 [0, 1],
                 at,
-                g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
+                g1_vy_leg * t2_leg - minus_g2_vy_leg * t3_leg,
             );
             ::overact::lanes::put(
                 &mut added[4],
                 [0, 1],
                 at,
-                g1_vy_leg * t5_leg - minus_g2_vy_leg * t6_leg,
+                g1_vy_leg * t4_leg - minus_g2_vy_leg * t5_leg,
             );
             ::overact::lanes::put(
                 &mut added[5],
                 [0, 1],
                 at,
-                g2_wz_leg * t6_leg - minus_g1_wz_leg * t5_leg,
+                g2_wz_leg * t5_leg - minus_g1_wz_leg * t4_leg,
             );
             ::overact::lanes::put(
                 &mut added[6],
@@ -11779,7 +11815,7 @@ impl DualV {
     ///
     /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 612 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 155 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11819,6 +11855,10 @@ impl DualV {
         // --- what the legs add: a row for each number, in it one for each leg
         let mut added = [[0.0; 4]; 9];
         /// Numbers in which the legs differ: a row for each, in it one for each leg.
+        /// 0: y of the end
+        /// 1: 0.41 * cos(gamma of `1`)
+        /// 2: 0.41 * sin(gamma of `1`)
+        /// 3: sign of a root in the closed form, beside that of `leg1`
         static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
             [0.11, 0.11, -0.11, -0.11],
             [
@@ -11874,23 +11914,23 @@ impl DualV {
             let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
             ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
             let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-            let t1_leg = h_leg * of_leg[3];
-            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * t1_leg;
+            let signed_h_leg = h_leg * of_leg[3];
+            let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
             let l2_x_leg = d_x_leg - l1_x_leg;
-            let det_leg = rho_squared_leg * t1_leg;
+            let det_leg = rho_squared_leg * signed_h_leg;
             ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
             let k1_leg = 1.0 / det_leg;
             let g1_vx_leg = l2_x_leg * k1_leg;
             let minus_g2_vx_leg = l1_x_leg * k1_leg;
-            let t2_leg = INV_L_AB_SQUARED * own_base_parameters[1];
-            let minus_first1_x_leg = det_leg * t2_leg;
+            let t1_leg = INV_L_AB_SQUARED * own_base_parameters[1];
+            let minus_first1_x_leg = det_leg * t1_leg;
             let minus_masses_leg_1_2 = L_AB * minus_first1_x_leg;
             let c1_leg = INV_L_AB * l1_x_leg;
-            let t3_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
-            let first1_y_leg = t3_leg * t2_leg;
-            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * t1_leg;
+            let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+            let first1_y_leg = t2_leg * t1_leg;
+            let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
             let s1_leg = INV_L_AB * l1_y_leg;
-            let t4_leg = g1_vx_leg
+            let t3_leg = g1_vx_leg
                 * (g1_vx_leg * own_base_parameters[0]
                     + minus_g2_vx_leg * minus_masses_leg_1_2)
                 + minus_g2_vx_leg
@@ -11899,15 +11939,15 @@ impl DualV {
             let l2_y_leg = d_y_leg - l1_y_leg;
             let g1_vy_leg = l2_y_leg * k1_leg;
             let minus_g2_vy_leg = l1_y_leg * k1_leg;
-            let t5_leg = g1_vy_leg * own_base_parameters[0]
+            let t4_leg = g1_vy_leg * own_base_parameters[0]
                 + minus_g2_vy_leg * minus_masses_leg_1_2;
-            let t6_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
+            let t5_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
                 + minus_g2_vy_leg * own_base_parameters[2];
             let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg + p_y_leg * g1_vx_leg;
             let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg + p_y_leg * minus_g2_vx_leg;
-            let t7_leg = minus_g1_wz_leg * own_base_parameters[0]
+            let t6_leg = minus_g1_wz_leg * own_base_parameters[0]
                 + g2_wz_leg * minus_masses_leg_1_2;
-            let t8_leg = minus_g1_wz_leg * minus_masses_leg_1_2
+            let t7_leg = minus_g1_wz_leg * minus_masses_leg_1_2
                 + g2_wz_leg * own_base_parameters[2];
             let minus_v_arm_x_leg = p_y_leg * twist[2];
             let minus_bias_a_end_y_leg = twist[2] * minus_v_arm_x_leg;
@@ -11920,14 +11960,14 @@ impl DualV {
             let rate_2_squared_leg = minus_rate_2_leg * minus_rate_2_leg;
             let bias_a_on_f1_leg = l2_y_leg * minus_bias_a_end_y_leg
                 - l2_x_leg * bias_a_end_x_leg - L_AB_SQUARED * rate_2_squared_leg;
-            let t9_leg = own_base_parameters[1] * INV_L_AB;
+            let t8_leg = own_base_parameters[1] * INV_L_AB;
             let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
             let rate_1_squared_leg = rate_1_leg * rate_1_leg;
             let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                 - l1_y_leg * minus_bias_a_end_y_leg + L_AB_SQUARED * rate_1_squared_leg;
             let minus_bias_rate_dot_2_leg = k1_leg
-                * (bias_a_on_f2_leg + rate_2_squared_leg * t3_leg);
-            let moment2_z_leg = bias_a_on_f1_leg * t9_leg
+                * (bias_a_on_f2_leg + rate_2_squared_leg * t2_leg);
+            let moment2_z_leg = bias_a_on_f1_leg * t8_leg
                 - own_base_parameters[2] * minus_bias_rate_dot_2_leg;
             let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
             let tau_2_leg = own_base_parameters[5]
@@ -11943,45 +11983,45 @@ impl DualV {
                 + own_base_parameters[8];
             let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
             let minus_bias_rate_dot_1_leg = k1_leg
-                * (bias_a_on_f1_leg - rate_1_squared_leg * t3_leg);
+                * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
             let tau_1_leg = own_base_parameters[9] * rate_1_leg
                 + ::overact::lanes::signed(own_base_parameters[10], rate_1_leg, at)
                 + own_base_parameters[11];
-            let force_on_u1_leg = bias_a_on_f2_leg * t9_leg
+            let force_on_u1_leg = bias_a_on_f2_leg * t8_leg
                 - own_base_parameters[0] * minus_bias_rate_dot_1_leg + tau_1_leg
                 - tau_2_leg;
             let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
             failed.told()?;
-            ::overact::lanes::put(&mut added[0], [0, 1], at, t4_leg);
+            ::overact::lanes::put(&mut added[0], [0, 1], at, t3_leg);
             ::overact::lanes::put(
                 &mut added[1],
                 [0, 1],
                 at,
-                g1_vx_leg * t5_leg + minus_g2_vx_leg * t6_leg,
+                g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg,
             );
             ::overact::lanes::put(
                 &mut added[2],
                 [0, 1],
                 at,
-                -(g1_vx_leg * t7_leg + minus_g2_vx_leg * t8_leg),
+                -(g1_vx_leg * t6_leg + minus_g2_vx_leg * t7_leg),
             );
             ::overact::lanes::put(
                 &mut added[3],
                 [0, 1],
                 at,
-                g1_vy_leg * t5_leg + minus_g2_vy_leg * t6_leg,
+                g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg,
             );
             ::overact::lanes::put(
                 &mut added[4],
                 [0, 1],
                 at,
-                -(g1_vy_leg * t7_leg + minus_g2_vy_leg * t8_leg),
+                -(g1_vy_leg * t6_leg + minus_g2_vy_leg * t7_leg),
             );
             ::overact::lanes::put(
                 &mut added[5],
                 [0, 1],
                 at,
-                minus_g1_wz_leg * t7_leg + g2_wz_leg * t8_leg,
+                minus_g1_wz_leg * t6_leg + g2_wz_leg * t7_leg,
             );
             ::overact::lanes::put(
                 &mut added[6],

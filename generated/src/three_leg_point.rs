@@ -6160,7 +6160,7 @@ impl ThreeLegPoint {
     ///
     /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 360 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 3 legs run side by side, in the lanes of vectors: 12 operations once, and 127 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6189,6 +6189,10 @@ impl ThreeLegPoint {
             // --- what the legs add: a row for each number, in it one for each leg
             let mut added = [[0.0; 3]; 5];
             /// Numbers in which the legs differ: a row for each, in it one for each leg.
+            /// 0: x of the base
+            /// 1: cos(turn of the base about z)
+            /// 2: y of the base
+            /// 3: sin(turn of the base about z)
             static OF_LEG: [[::core::primitive::f64; 3]; 4] = [
                 [0.0, -0.3031088913245535, 0.30310889132455343],
                 [0.0, -0.8660254037844386, 0.8660254037844384], [0.35, -0.175, -0.175],

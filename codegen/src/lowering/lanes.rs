@@ -138,6 +138,8 @@ pub struct Lanes {
     pub legs: Vec<String>,
     /// Whose the elements of each input are.
     pub inputs: Vec<Elements>,
+    /// What the legs' constants are, in words.
+    pub names: Vec<String>,
     /// The values of the legs' constants, leg by leg.
     pub constants: Vec<Vec<f64>>,
     /// For each guard of the program, what its value is at home in each leg.

@@ -61,6 +61,11 @@ const KINDS: &[Kind] = &[
     kind("rho_squared", "ρ²", "D · D, m²"),
     kind("h_squared", "h²", "l₁²/ρ² - a², the square of h"),
     kind("h", "h", "the elbow stands at a D ± h D⊥, eq. (7) solved"),
+    kind(
+        "signed_h",
+        "±h",
+        "h with the sign of the leg's working mode",
+    ),
     kind("l1_@", "l₁ e₁", "the proximal link, in the leg's plane, m"),
     kind("l2_@", "l₂ e₂", "the distal link, in the leg's plane, m"),
     kind(
@@ -69,6 +74,11 @@ const KINDS: &[Kind] = &[
         "radicand of the closure's equation for a joint; negative out of reach",
     ),
     kind("w#", "w", "root of the closure's equation for a joint"),
+    kind(
+        "signed_w#",
+        "±w",
+        "w with the sign of the leg's working mode",
+    ),
     kind(
         "middle#",
         "-(q' + q'')/2",

@@ -25,7 +25,7 @@ pub fn of_function(cost: &WholeCost) -> Vec<String> {
             ),
         });
         lines.push(
-            " In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.".to_owned(),
+            " In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.".to_owned(),
         );
     }
     for iteration in &cost.iterations {

@@ -6,7 +6,8 @@
 //! (`equations`) one is looked for that holds a single unknown and is linear in its cosine and
 //! sine or quadratic in its slide. What is found makes others soluble.
 //!
-//! The closed forms hold square roots, whose signs are the working mode of the home configuration.
+//! The closed forms hold square roots, whose signs are the working mode of the home configuration. Where one leg stands for
+//! others of another mode, the signs are elements of an array ([`Home::signs`](crate::mechanism::Home)).
 
 mod equations;
 mod peeling;
@@ -77,6 +78,15 @@ impl<'a, 'm> Task<'a, 'm> {
     /// The value at home of an expression in the pose.
     fn at_home(&self, expr: Expr<'a>) -> f64 {
         self.home.value(self.arena, expr)
+    }
+
+    /// Names a root, and what it is with its sign where that is one of the numbers of a leg that stands for others.
+    fn name_root(&self, root: Expr<'a>, radicand: Expr<'a>, name: &str) {
+        let plain = radicand.sqrt();
+        let _ = plain.named(name);
+        if root != plain && root != -plain {
+            let _ = root.named(&format!("signed_{name}"));
+        }
     }
 
     /// The least size that an equation's coefficients have without cancelling: they are components of

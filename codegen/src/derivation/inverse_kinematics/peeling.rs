@@ -198,7 +198,7 @@ fn take<'a>(
             let _ = named(p, "middle");
             let radicand = named(radicand, "w_squared");
             let root = configuration.root(task.first_joint, task.home, radicand, is_positive);
-            let _ = named(radicand.sqrt(), "w");
+            task.name_root(root, radicand, &format!("w{label}"));
             let position = root - p;
             learn_slide(unknown, position, configuration);
             return Some(Some(Reach { radicand }));

@@ -140,32 +140,36 @@ fn two_links<'a>(
     let (x, y) = (named(end.x(), "d_x"), named(end.y(), "d_y"));
     let square = named(x * x + y * y, "rho_squared");
     let reciprocal = square.reciprocal();
-    let half = Number::ratio(Ratio::new(1, 2)?);
+    // What is made of lengths is a number, unless something stands for them.
+    let (one, half) = (Number::ONE, Number::ratio(Ratio::new(1, 2)?));
+    let over = |number: Number, divisor: Expr<'a>| match divisor.as_number() {
+        Some(known) => arena.number(number / known),
+        None => arena.number(number) / divisor,
+    };
     // a = 1/2 + (l1² - l2²)/(2 ρ²), which is 1/2 for links of one length.
-    let a = arena.number(half) + reciprocal * ((l1 * l1 - l2 * l2) * half);
-    let radicand = named(reciprocal * (l1 * l1) - a * a, "h_squared");
+    let difference = arena.constant_sum([[l1, l1, half], [-l2, l2, half]]);
+    let a = arena.number(half) + reciprocal * difference;
+    let radicand = reciprocal * arena.constant_sum([[l1, l1, one]]) - a * a;
+    let radicand = named(radicand, "h_squared");
     // The bend from the first link to the second at home tells the elbow's side.
     let bend = second.direction.plus(&first.direction.negative())?;
     let is_positive = task.turn_at_home(&bend).sin() > 0.0;
     let h = configuration.root(task.first_joint, task.home, radicand, is_positive);
-    let _ = named(radicand.sqrt(), "h");
+    task.name_root(h, radicand, &format!("h_{}", task.leg.name));
     let (along, across) = ((x * a, y * a), (x * h, y * h));
     // The elbow lies to the right of D when the second link bends to the left.
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
     let (e1x, e1y) = (named(e1x, "l1_x"), named(e1y, "l1_y"));
-    let inverse = |l: Number| Number::ONE / l;
-    configuration.learn(
-        first.direction.clone(),
-        (e1x * inverse(l1), e1y * inverse(l1)),
-    );
+    let [inverse1, inverse2] = [l1, l2].map(|length| over(one, arena.number(length)));
+    let unit = (e1x * inverse1, e1y * inverse1);
+    configuration.learn(first.direction.clone(), unit);
     let (e2x, e2y) = (named(x - e1x, "l2_x"), named(y - e1y, "l2_y"));
-    configuration.learn(
-        second.direction.clone(),
-        (e2x * inverse(l2), e2y * inverse(l2)),
-    );
-    let product = l1 * l2;
-    let cosine = (square - arena.number(l1 * l1 + l2 * l2)) * (half / product);
-    let sine = h * square * (Number::ONE / product);
+    let unit = (e2x * inverse2, e2y * inverse2);
+    configuration.learn(second.direction.clone(), unit);
+    let product = arena.constant_sum([[l1, l2, one]]);
+    let squares = arena.constant_sum([[l1, l1, one], [l2, l2, one]]);
+    let cosine = (square - squares) * over(half, product);
+    let sine = h * square * over(one, product);
     configuration.learn(bend, (cosine, sine));
     Some(Reach { radicand })
 }

@@ -176,6 +176,8 @@ fn tables(lanes: &Lanes) -> TokenStream {
     let of_element = |at| lanes.constants.iter().map(|leg| leg[at]).collect();
     let constants = (0..elements).map(|at| numbers(of_element(at)));
     let rows = unsuffixed(elements);
+    let names = lanes.names.iter().enumerate();
+    let names = names.map(|(row, name)| format!(" {row}: {name}"));
     let legs = &lanes.legs;
     let homes = lanes.program.guards.iter().zip(&lanes.homes);
     let homes = homes.enumerate().filter_map(|(at, (guard, homes))| {
@@ -190,6 +192,7 @@ fn tables(lanes: &Lanes) -> TokenStream {
     });
     quote! {
         #[doc = " Numbers in which the legs differ: a row for each, in it one for each leg."]
+        #(#[doc = #names])*
         static OF_LEG: [[::core::primitive::f64; #count]; #rows] = [#(#constants),*];
         #[doc = " Names of the legs, for errors."]
         static LEGS: [&::core::primitive::str; #count] = [#(#legs),*];

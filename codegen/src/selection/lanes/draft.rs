@@ -6,7 +6,7 @@ use super::template::{ARRAY, Template};
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{BodyParameter, Derived, MotionInput, Selection};
 use crate::lowering::{
-    Column, Condition, Elements, Gathered, Lanes, Operand, Pays, Program, fold, scatter,
+    Column, Condition, Elements, Gathered, Lanes, Operand, Operation, Pays, Program, fold, scatter,
 };
 use crate::selection::assemble::Assembler;
 use overact_core::{Columns, Function, Input};
@@ -69,6 +69,9 @@ impl Draft<'_> {
             let given = |name: &str| (name == ARRAY).then(|| self.template.values(leg));
             value_of(&program, &folded.elements, &given)
         };
+        let names = folded.elements.iter();
+        let names = names.map(|element| said(&program, *element, &|at| self.template.name(at)));
+        let names: Vec<String> = names.collect();
         let constants: Option<Vec<Vec<f64>>> = (0..mechanism.legs.len()).map(of_leg).collect();
         let mut program = folded.program;
         name_guards(&mut program, &mechanism.legs[0].name);
@@ -81,6 +84,7 @@ impl Draft<'_> {
             legs: mechanism.legs.iter().map(|l| l.name.clone()).collect(),
             inputs,
             constants: constants?,
+            names,
             homes: Vec::new(),
         };
         lanes.homes = self.homes(&lanes)?;
@@ -166,6 +170,33 @@ impl Draft<'_> {
         let of_legs = of_legs?;
         let of_guard = |guard: usize| of_legs.iter().map(|values| values[guard].abs()).collect();
         Some((0..guards.len()).map(of_guard).collect())
+    }
+}
+
+/// What an operand of a program that has the numbers of a leg alone is, in words.
+fn said<'n>(program: &Program, operand: Operand, name: &dyn Fn(usize) -> &'n str) -> String {
+    let of = |operand| said(program, operand, name);
+    let inside = |operand: Operand| match operand {
+        Operand::Step(_) => format!("({})", of(operand)),
+        _ => of(operand),
+    };
+    let at = match operand {
+        Operand::Constant(number) => return number.to_string(),
+        Operand::Input { index, .. } => return name(index).to_owned(),
+        Operand::Step(at) => at,
+    };
+    match program.steps[at].operation {
+        Operation::Add(a, b) => format!("{} + {}", of(a), of(b)),
+        Operation::Sub(a, b) => format!("{} - {}", of(a), inside(b)),
+        Operation::Mul(a, b) => format!("{} * {}", inside(a), inside(b)),
+        Operation::Div(a, b) => format!("{} / {}", inside(a), inside(b)),
+        Operation::Neg(a) => format!("-{}", inside(a)),
+        Operation::Sqrt(a) => format!("sqrt({})", of(a)),
+        Operation::Sine(a) => format!("sin({})", of(a)),
+        Operation::Cosine(a) => format!("cos({})", of(a)),
+        Operation::Sign(a) => format!("sign({})", of(a)),
+        Operation::Signed(a, b) => format!("{} * sign({})", inside(a), of(b)),
+        Operation::Atan2(a, b) => format!("atan2({}, {})", of(a), of(b)),
     }
 }
 

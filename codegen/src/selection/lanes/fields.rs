@@ -17,6 +17,33 @@ pub(super) fn numbers(leg: &mut Leg) -> Vec<&mut Number> {
     numbers
 }
 
+/// What the numbers are called, in the same order.
+pub(super) fn names_of_numbers(leg: &Leg) -> Vec<String> {
+    let axes = |of: &str| ["x", "y", "z"].map(|axis| format!("{axis} of {of}"));
+    let of_joint = |name: &str| ["b", "d", "r"].map(|own| format!("{own} of `{name}`"));
+    let ends = leg.end.iter().flat_map(|_| axes("the end"));
+    let joints = leg.joints.iter().flat_map(|joint| of_joint(&joint.name));
+    axes("the base")
+        .into_iter()
+        .chain(ends)
+        .chain(joints)
+        .collect()
+}
+
+/// What the angles are called, in the same order.
+pub(super) fn names_of_angles(leg: &Leg) -> Vec<String> {
+    let axes = |of: &str| ["x", "y", "z"].map(|axis| format!("turn of {of} about {axis}"));
+    let of_joint = |name: &str| ["gamma", "alpha", "theta"].map(|own| format!("{own} of `{name}`"));
+    let end = leg.end.iter().filter(|end| matches!(end, End::Rigid(_)));
+    let ends = end.flat_map(|_| axes("the end"));
+    let joints = leg.joints.iter().flat_map(|joint| of_joint(&joint.name));
+    axes("the base")
+        .into_iter()
+        .chain(ends)
+        .chain(joints)
+        .collect()
+}
+
 /// Angles.
 pub(super) fn angles(leg: &mut Leg) -> Vec<&mut Angle> {
     let mut angles: Vec<&mut Angle> = leg.base.rotation.iter_mut().collect();

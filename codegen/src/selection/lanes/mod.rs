@@ -3,8 +3,9 @@
 //! Straight code of many equal legs is longer than an instruction cache, and the compiler finds hardly any vectors
 //! in it. So where legs differ in nothing but numbers, one of them is derived with elements of an array in the
 //! place of these numbers ([`template`]), which keeps all that the algebra knows of them: a cosine and a sine
-//! that differ from leg to leg still have squares that add up to one. The other legs are the same program with their
-//! numbers. What it gives are columns of a regressor ([`columns`]), or what a leg adds to sums from which inverse
+//! that differ from leg to leg still have squares that add up to one, and what is equal or opposite in all legs stays so
+//! ([`stands`]). Where legs are in several working modes, the signs of the roots in their closed forms are such numbers, too.
+//! The other legs are the same program with their numbers. What it gives are columns of a regressor ([`columns`]), or what a leg adds to sums from which inverse
 //! and forward dynamics follow ([`sums`]). Special values of a leg, a point on an axis for instance, bring nothing
 //! then, and nothing is shared between legs that lie symmetrically, so there are more operations than in the
 //! straight program, which interpreted robots and other languages keep. Both are compared at random states
@@ -35,6 +36,9 @@ const FEW: usize = 960;
 
 /// Those from which two lanes win where sums are what is computed, with four legs and more.
 const FEW_OF_SUMS: usize = 1440;
+
+/// Those of a mass matrix, of which two lanes lose most of what legs share.
+const MANY_OF_MASSES: usize = 1000;
 
 /// The fewest legs that are worth it.
 const LEGS: usize = 3;
@@ -90,6 +94,7 @@ fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -
     let (always, with_four) = match function {
         Function::IdmRedPlatform(_) if from_joints => (TOO_LONG, 680),
         Function::IdmRedPlatform(_) => (TOO_LONG, FEW / legs),
+        Function::MassMatrix(_) if !from_joints => (MANY_OF_MASSES, FEW / legs),
         Function::InverseDynamics(_)
         | Function::MassMatrix(_)
         | Function::Bias(_)

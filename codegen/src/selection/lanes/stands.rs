@@ -14,6 +14,8 @@ pub(super) struct Constant {
     pub(super) number: Option<Number>,
     /// What it is in each leg.
     pub(super) values: Vec<f64>,
+    /// What it is called.
+    pub(super) name: String,
 }
 
 /// What stands for what.
@@ -38,7 +40,7 @@ impl Stands {
     }
 
     /// What stands for the legs' numbers; their own where all have the same.
-    pub(super) fn number(&mut self, all: Vec<Number>) -> Number {
+    pub(super) fn number(&mut self, all: Vec<Number>, name: &str) -> Number {
         let first = all[0];
         if all.iter().all(|number| *number == first) {
             return first;
@@ -55,14 +57,14 @@ impl Stands {
             let near = 1e-3 * self.stream.number();
             let number = Number::float(first.value() * (1.0 + near) + near);
             let values = all.iter().map(|number| number.value()).collect();
-            self.add(number, values);
+            self.add(number, values, name.to_owned());
             self.numbers.push((all, number));
             number
         })
     }
 
     /// What stands for the legs' angles; their own where all have the same.
-    pub(super) fn angle(&mut self, all: Vec<Angle>) -> Option<Angle> {
+    pub(super) fn angle(&mut self, all: Vec<Angle>, name: &str) -> Option<Angle> {
         let first = all[0];
         if all.iter().all(|angle| *angle == first) {
             return Some(first);
@@ -84,24 +86,26 @@ impl Stands {
         let (cosine, sine) = angle.cosine_and_sine();
         let of_legs = all.iter().map(|angle| angle.cosine_and_sine());
         let (cosines, sines): (Vec<Number>, Vec<Number>) = of_legs.unzip();
-        for (number, of_legs) in [(cosine, cosines), (sine, sines)] {
-            self.add(
-                number,
-                of_legs.iter().map(|number| number.value()).collect(),
-            );
+        for (number, of_legs, what) in [(cosine, cosines, "cos"), (sine, sines, "sin")] {
+            let values = of_legs.iter().map(|number| number.value()).collect();
+            self.add(number, values, format!("{what}({name})"));
         }
         self.angles.push((all, angle));
         Some(angle)
     }
 
     /// A number that stands for those of the legs, unless it or its negative does already.
-    fn add(&mut self, number: Number, values: Vec<f64>) {
+    fn add(&mut self, number: Number, values: Vec<f64>, name: String) {
         let mut numbers = self.constants.iter().filter_map(|c| c.number);
         if !numbers
             .any(|other| other.image() == number.image() || (-other).image() == number.image())
         {
             let number = Some(number);
-            self.constants.push(Constant { number, values });
+            self.constants.push(Constant {
+                number,
+                values,
+                name,
+            });
         }
     }
 }
@@ -130,25 +134,31 @@ mod tests {
     fn what_is_equal_or_opposite_in_all_legs_stays_so() {
         let mut stands = Stands::new();
         let numbers = |all: [i64; 2]| all.map(Number::integer).to_vec();
-        let first = stands.number(numbers([11, -30]));
+        let mut of = |all| stands.number(numbers(all), "d of `1`");
+        let first = of([11, -30]);
         assert_ne!(first, Number::integer(11));
-        assert_eq!(stands.number(numbers([11, -30])), first);
-        assert_eq!(stands.number(numbers([-11, 30])), -first);
-        assert_ne!(stands.number(numbers([11, 30])), first);
-        assert_eq!(stands.number(numbers([2, 2])), Number::integer(2));
+        assert_eq!(of([11, -30]), first);
+        assert_eq!(of([-11, 30]), -first);
+        assert_ne!(of([11, 30]), first);
+        assert_eq!(of([2, 2]), Number::integer(2));
         assert_eq!(stands.constants.len(), 2);
     }
 
     #[test]
     fn angles_keep_sums_and_differences_that_all_legs_have() {
         let mut stands = Stands::new();
-        let mut of = |all| stands.angle(degrees(all)).expect("an angle");
+        let mut of = |all| {
+            stands
+                .angle(degrees(all), "gamma of `1`")
+                .expect("an angle")
+        };
         let first = of([15, 164]);
         let sum = |a: Angle, b: Angle| a.plus(b).expect("a sum");
         assert!(sum(first, of([-15, -164])).is_zero());
         assert_eq!(sum(of([45, 194]), first.negative()), degrees([30, 30])[0]);
         assert_eq!(sum(of([75, -74]), first), degrees([90, 90])[0]);
         assert_eq!(of([7, 7]), degrees([7, 7])[0]);
+        assert_eq!(stands.constants[1].name, "sin(gamma of `1`)");
         // Cosine and sine of three that differ by more than a sign: of the first, of 30 and of 90 degrees less it.
         let numbers = stands.constants.iter().filter_map(|c| c.number);
         assert!(numbers.clone().count() <= 6, "{}", numbers.count());

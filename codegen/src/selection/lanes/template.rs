@@ -1,6 +1,6 @@
 //! A leg that stands for all legs of its kind: the numbers in which they differ are elements of an array.
 
-use super::fields::{angles, numbers};
+use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
 use super::stands::{Constant, Stands};
 use crate::cas::{Angle, Arena, InputElement, Number};
 use crate::derivation::working_modes;
@@ -29,15 +29,17 @@ impl Template {
         }
         let mut stands = Stands::new();
         let mut legs = mechanism.legs.clone();
+        let names = names_of_numbers(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(numbers).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.number(all);
+            *of_legs[0][at] = stands.number(all, &names[at]);
         }
+        let names = names_of_angles(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(angles).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.angle(all)?;
+            *of_legs[0][at] = stands.angle(all, &names[at])?;
         }
         let mut constants = stands.constants;
         legs[0].name = name(&mechanism.legs);
@@ -69,6 +71,11 @@ impl Template {
         }
     }
 
+    /// What an element of the array is called.
+    pub(super) fn name(&self, index: usize) -> &str {
+        &self.constants[index].name
+    }
+
     /// The numbers of a leg.
     pub(super) fn values(&self, leg: usize) -> Vec<f64> {
         self.constants.iter().map(|c| c.values[leg]).collect()
@@ -85,6 +92,7 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     if modes.iter().any(|mode| mode.len() != first.len()) {
         return Vec::new();
     }
+    let leg = &mechanism.legs[0].name;
     let sign = |root: usize| {
         let values = modes.iter().map(|mode| match mode[root] == first[root] {
             true => 1.0,
@@ -93,8 +101,11 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
         let values: Vec<f64> = values.collect();
         let index = constants.len();
         values.contains(&-1.0).then(|| {
-            let number = None;
-            constants.push(Constant { number, values });
+            constants.push(Constant {
+                number: None,
+                values,
+                name: format!("sign of a root in the closed form, beside that of `{leg}`"),
+            });
             InputElement {
                 array: ARRAY,
                 index,
