@@ -35,7 +35,10 @@ fn rename(tokens: TokenStream, path: &TokenStream) -> TokenStream {
 }
 
 /// Words of the language behind which a path begins.
-const WORDS: [&str; 8] = ["as", "dyn", "for", "impl", "in", "return", "use", "where"];
+const WORDS: [&str; 14] = [
+    "as", "dyn", "else", "for", "if", "impl", "in", "let", "match", "mut", "return", "use",
+    "where", "while",
+];
 
 /// Whether the last two tokens are `::`, and what stands before them ends no part of a path.
 fn begins_a_path(tokens: &[TokenTree]) -> bool {
@@ -60,11 +63,13 @@ mod tests {
             #[doc = "::overact"]
             fn overact(a: &::overact::Error) -> [::overact::Parameter; 2] { b::overact(::core::a) }
             impl ::overact::Model for A { use ::overact::Error; }
+            fn b() { if ::overact::lanes::FOUR { return ::overact::a; } }
         };
         let wanted = quote! {
             #[doc = "::overact"]
             fn overact(a: &crate::my::Error) -> [crate::my::Parameter; 2] { b::overact(::core::a) }
             impl crate::my::Model for A { use crate::my::Error; }
+            fn b() { if crate::my::lanes::FOUR { return crate::my::a; } }
         };
         let path = Runtime::new("crate::my").expect("a path");
         assert_eq!(

@@ -161,16 +161,22 @@ fn functions(document: &Inspection) -> String {
 fn side_by_side(document: &Inspection) -> String {
     let told = document.functions.iter().filter_map(|function| {
         let cost = function.cost.side_by_side?;
-        let vectors = match cost.lanes {
-            0..=2 => String::new(),
-            least => format!(" with vectors of {least} numbers and more"),
-        };
-        Some(format!(
-            "{} in Rust{vectors}: {} legs side by side, {} operations once and {} of each leg.\n",
-            function.function, cost.legs, cost.once, cost.each
-        ))
+        let counts = [cost.legs, cost.once, cost.each, cost.lanes].map(|count| count.to_string());
+        Some([vec![function.function.clone()], counts.to_vec()].concat())
     });
-    told.collect()
+    let told: Vec<Vec<String>> = told.collect();
+    if told.is_empty() {
+        return String::new();
+    }
+    let head = [
+        "in Rust, side by side",
+        "legs",
+        "op once",
+        "op a leg",
+        "with vectors of",
+    ];
+    let head = vec![head.map(str::to_owned).to_vec()];
+    format!("\n{}", columns(&[head, told].concat(), &[true]))
 }
 
 /// What a function that calls an iteration takes for each of its steps.
