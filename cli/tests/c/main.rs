@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// How many times larger than what one rounding of the inputs changes a difference may be, where that is above
 /// the tolerance: near singularities, and of what is zero but for rounding. Formulas lose up to 40 times that where they
-/// divide by what nearly vanishes inside (a humanoid's leg far from home, without a search); a wrong formula, 1e12.
+/// divide by what nearly vanishes inside: a humanoid's leg far from home, without a search.
 const ROUNDINGS: f64 = 60.0;
 
 /// Largest difference, relative to the largest number of an output. Sines of the C library and those of the

@@ -84,7 +84,7 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         return "";
     };
     if tree && matches!(meant, Meant::Form(_, MotionInput::Joints)) {
-        return ": its pose are its joints, which the function without `_from_joints` takes";
+        return ": its joints are its pose, which the function without `_from_joints` takes";
     }
     match function.condition() {
         Condition::Platform if tree => ": that is one of robots with a platform",

@@ -249,7 +249,7 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cas::{Arena, Number, Ratio};
+    use crate::cas::Ratio;
 
     /// The entries of a quaternion have squares of sum one, and with one that is zero so have the others.
     #[test]

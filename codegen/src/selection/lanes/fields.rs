@@ -19,29 +19,31 @@ pub(super) fn numbers(leg: &mut Leg) -> Vec<&mut Number> {
 
 /// What the numbers are called, in the same order.
 pub(super) fn names_of_numbers(leg: &Leg) -> Vec<String> {
-    let axes = |of: &str| ["x", "y", "z"].map(|axis| format!("{axis} of {of}"));
-    let of_joint = |name: &str| ["b", "d", "r"].map(|own| format!("{own} of `{name}`"));
-    let ends = leg.end.iter().flat_map(|_| axes("the end"));
-    let joints = leg.joints.iter().flat_map(|joint| of_joint(&joint.name));
-    axes("the base")
-        .into_iter()
-        .chain(ends)
-        .chain(joints)
-        .collect()
+    let along = |axis: &str, of: &str| format!("{axis} of {of}");
+    names(leg, leg.end.is_some(), along, ["b", "d", "r"])
 }
 
 /// What the angles are called, in the same order.
 pub(super) fn names_of_angles(leg: &Leg) -> Vec<String> {
-    let axes = |of: &str| ["x", "y", "z"].map(|axis| format!("turn of {of} about {axis}"));
-    let of_joint = |name: &str| ["gamma", "alpha", "theta"].map(|own| format!("{own} of `{name}`"));
-    let end = leg.end.iter().filter(|end| matches!(end, End::Rigid(_)));
-    let ends = end.flat_map(|_| axes("the end"));
-    let joints = leg.joints.iter().flat_map(|joint| of_joint(&joint.name));
-    axes("the base")
+    let about = |axis: &str, of: &str| format!("turn of {of} about {axis}");
+    let is_rigid = matches!(leg.end, Some(End::Rigid(_)));
+    names(leg, is_rigid, about, ["gamma", "alpha", "theta"])
+}
+
+/// Three of the base, of the end if it has them, and of each joint.
+fn names(
+    leg: &Leg,
+    has_end: bool,
+    of_axis: impl Fn(&str, &str) -> String,
+    of_joint: [&str; 3],
+) -> Vec<String> {
+    let ends = ["the base", "the end"]
         .into_iter()
-        .chain(ends)
-        .chain(joints)
-        .collect()
+        .take(1 + usize::from(has_end));
+    let ends = ends.flat_map(|of| ["x", "y", "z"].map(|axis| of_axis(axis, of)));
+    let joints = leg.joints.iter().map(|joint| &joint.name);
+    let joints = joints.flat_map(|name| of_joint.map(|own| format!("{own} of `{name}`")));
+    ends.chain(joints).collect()
 }
 
 /// Angles.
@@ -54,4 +56,29 @@ pub(super) fn angles(leg: &mut Leg) -> Vec<&mut Angle> {
         angles.extend([&mut joint.gamma, &mut joint.alpha, &mut joint.theta]);
     }
     angles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{angles, names_of_angles, names_of_numbers, numbers};
+    use crate::diagnostic::Source;
+    use crate::mechanism::check;
+
+    #[test]
+    fn every_number_and_angle_has_a_name_of_its_own() {
+        for text in [
+            include_str!("../../../../robots/dualv.toml"),
+            include_str!("../../../../robots/hexapod.toml"),
+        ] {
+            let description = crate::description::parse(&Source::new("a.toml", text));
+            let mut leg = check(&description.expect("right")).expect("right").legs[0].clone();
+            let names = [names_of_numbers(&leg), names_of_angles(&leg)];
+            assert_eq!(names[0].len(), numbers(&mut leg).len());
+            assert_eq!(names[1].len(), angles(&mut leg).len());
+            let mut all = names.concat();
+            all.sort();
+            all.dedup();
+            assert_eq!(all.len(), numbers(&mut leg).len() + angles(&mut leg).len());
+        }
+    }
 }
