@@ -3,7 +3,7 @@
 use overact::Model;
 use overact_identification::{Gains, Identification, Log, Settings, Stage, drive_gains};
 use overact_robot::{Identifier, Robot, Runs};
-use overact_tier::by_tier;
+use overact_tier::{by_tier, drawn};
 use std::{collections::BTreeMap, f64::consts::TAU, path::Path};
 
 fn text(name: &str) -> String {
@@ -181,7 +181,7 @@ fn deviations_of_gains_are_honest() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let settings = robot.settings(1000.0);
-    let draws = by_tier([4, 300]);
+    let draws = drawn([4, 100]);
     let noise = [0.5, 1.0, 2.0, 1.0];
     let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
     let mut plain = [0.0; 4];
@@ -296,7 +296,7 @@ fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
 fn intervals_behind_gains_contain_the_truth() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
-    let draws = by_tier([1, 40]);
+    let draws = drawn([1, 20]);
     // Of parameters that are known well beside the gains: those to which gains matter.
     let (mut all, mut within, mut narrow) = (0, 0, 0);
     for seed in 1..=draws {

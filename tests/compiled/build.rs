@@ -10,41 +10,115 @@ use overact_codegen::{Effort, Request, Source, compile_with, description, emissi
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
-use std::{env, fs};
+use std::sync::{Mutex, PoisonError};
+use std::{env, fs, thread};
+
+/// A module and the text of the description that it is made from.
+struct Module {
+    name: String,
+    /// The description's file in `robots/`, without its extension.
+    stem: String,
+    text: String,
+    effort: Effort,
+}
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=../../robots");
-    let effort = Effort::Quick;
+    println!("cargo::rerun-if-changed=friction");
+    let mut modules = partitions()?;
+    modules.extend(robots()?);
+    modules.extend(friction()?);
+    write_all(modules)?;
+    known_parameters()
+}
+
+/// The robots of the library that `generated/` does not keep as text.
+fn robots() -> Result<Vec<Module>, Box<dyn Error>> {
+    let mut modules = Vec::new();
     for entry in fs::read_dir("../../robots")? {
         let path = entry?.path();
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let is_kept = Path::new(&format!("../../generated/src/{stem}.rs")).exists();
         if path.extension().is_some_and(|e| e == "toml") && !is_kept {
-            write(&stem, &stem, &fs::read_to_string(&path)?, effort)?;
+            let text = fs::read_to_string(&path)?;
+            modules.push(Module::new(&stem, &stem, text, Effort::Quick));
         }
     }
-    println!("cargo::rerun-if-changed=friction");
-    for stem in ["friction_arm", "friction_bar", "screw_arm"] {
-        let text = fs::read_to_string(format!("friction/{stem}.toml"))?;
-        write(stem, stem, &text, effort)?;
-    }
-    known_parameters()?;
-    let dualv = fs::read_to_string("../../robots/dualv.toml")?;
-    for kept in [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]] {
-        let [a, b, c] = kept;
-        // The description's own partition is compared, token by token, with the checked-in module.
-        let is_own = kept == [1, 2, 3];
-        let effort = if is_own { Effort::Thorough } else { effort };
-        let module = format!("dualv_kept_{a}{b}{c}");
-        write(&module, "dualv", &with_kept(&dualv, kept), effort)?;
-    }
-    Ok(())
+    Ok(modules)
 }
 
-/// Writes the module of a description's text.
-fn write(module: &str, stem: &str, text: &str, effort: Effort) -> Result<(), Box<dyn Error>> {
-    write_as(module, stem, text, &Request::with_effort(effort))
+/// Robots with every kind of friction and with screws.
+fn friction() -> Result<Vec<Module>, Box<dyn Error>> {
+    let mut modules = Vec::new();
+    for stem in ["friction_arm", "friction_bar", "screw_arm"] {
+        let text = fs::read_to_string(format!("friction/{stem}.toml"))?;
+        modules.push(Module::new(stem, stem, text, Effort::Quick));
+    }
+    Ok(modules)
+}
+
+/// The DualV in each of its four partitions.
+fn partitions() -> Result<Vec<Module>, Box<dyn Error>> {
+    let dualv = fs::read_to_string("../../robots/dualv.toml")?;
+    let partition = |kept: [usize; 3]| {
+        let [a, b, c] = kept;
+        // The description's own partition is compared, token by token, with the checked-in module.
+        let effort = match kept {
+            [1, 2, 3] => Effort::Thorough,
+            _ => Effort::Quick,
+        };
+        let name = format!("dualv_kept_{a}{b}{c}");
+        Module::new(&name, "dualv", with_kept(&dualv, kept), effort)
+    };
+    let all = [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]];
+    Ok(all.into_iter().map(partition).collect())
+}
+
+impl Module {
+    fn new(name: &str, stem: &str, text: String, effort: Effort) -> Self {
+        let (name, stem) = (name.to_owned(), stem.to_owned());
+        Self {
+            name,
+            stem,
+            text,
+            effort,
+        }
+    }
+
+    fn write(&self) -> Result<(), Box<dyn Error>> {
+        let request = Request::with_effort(self.effort);
+        write_as(&self.name, &self.stem, &self.text, &request)
+    }
+}
+
+/// Writes modules on all processors, the first ones first.
+fn write_all(modules: Vec<Module>) -> Result<(), Box<dyn Error>> {
+    let waiting = Mutex::new(modules.into_iter());
+    let failed = Mutex::new(Vec::new());
+    let next = || {
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.next()
+    };
+    let work = || {
+        while let Some(module) = next() {
+            if let Err(error) = module.write() {
+                let mut failed = failed.lock().unwrap_or_else(PoisonError::into_inner);
+                failed.push(format!("{}: {error}", module.name));
+            }
+        }
+    };
+    let count = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        for _ in 0..count {
+            scope.spawn(work);
+        }
+    });
+    let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(failed.join("\n").into())
 }
 
 /// Writes the module of what is asked for of a description's text.

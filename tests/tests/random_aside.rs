@@ -10,13 +10,13 @@
 use overact_codegen::{Choice, Source};
 use overact_tests::support::random::aside;
 use overact_tests::support::{Failure, whole::of_functions};
-use overact_tier::by_tier;
+use overact_tier::drawn;
 
 /// Of functions of base parameters, whose regroupings are told from numbers, and of all others.
 const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
 const STATES: usize = 3;
 /// Robots in the default tier and in the full one.
-const COUNT: [usize; 2] = [1, 36];
+const COUNT: [u64; 2] = [1, 20];
 /// What robots are compared in, by their seeds: all functions, or those of a group.
 const GROUPS: [Option<&str>; 4] = [
     None,
@@ -31,7 +31,7 @@ const DRAWS: u64 = 10;
 fn random_platforms_that_move_aside() -> Result<(), Failure> {
     let own = std::env::var("OVERACT_RANDOM_SEED");
     let own: Option<u64> = own.ok().and_then(|seed| seed.parse().ok());
-    let count = if own.is_some() { 1 } else { by_tier(COUNT) };
+    let count = if own.is_some() { 1 } else { drawn(COUNT) };
     let (mut compared, mut proposed, mut errors) = (0, 0, Vec::new());
     let mut seed = own.unwrap_or(0);
     while compared < count {
@@ -66,10 +66,10 @@ fn random_platforms_that_move_aside() -> Result<(), Failure> {
             }
         }
         seed += 1;
-        let drawn = seed - own.unwrap_or(0);
+        let tried = seed - own.unwrap_or(0);
         assert!(
-            drawn <= DRAWS * count as u64,
-            "hardly a draw closes: {compared} of {drawn}"
+            tried <= DRAWS * count,
+            "hardly a draw closes: {compared} of {tried}"
         );
     }
     println!("{compared} robots of {seed} draws, {proposed} with coordinates that were proposed");

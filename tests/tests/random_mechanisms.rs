@@ -22,7 +22,7 @@ use overact_tests::support::random::{Defect, Sketch, features};
 use overact_tests::support::sample::samples;
 use overact_tests::support::served::{partitions, project};
 use overact_tests::support::{Backend, Comparison, Evaluated, Failure, Sample};
-use overact_tier::by_tier;
+use overact_tier::drawn;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -55,10 +55,9 @@ fn setting(name: &str) -> Option<u64> {
 }
 
 fn seeds() -> std::ops::Range<u64> {
-    let count = setting("OVERACT_RANDOM_COUNT");
     match setting("OVERACT_RANDOM_SEED") {
-        Some(seed) => seed..seed + count.unwrap_or(1),
-        None => 0..count.unwrap_or(by_tier(COUNT)),
+        Some(seed) => seed..seed + drawn([1; 2]),
+        None => 0..drawn(COUNT),
     }
 }
 

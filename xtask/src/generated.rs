@@ -1,10 +1,11 @@
 //! What is written into `generated/`, and any other robot's module to read.
 
 use crate::files::{stems, write};
+use crate::hash::generator;
 use crate::robots::{Module, TEXT, all, several};
 use crate::{Failure, manifest};
 
-/// A file of `generated/` and what it has to hold.
+/// A module that is kept as text, and what it has to hold.
 pub(crate) struct File {
     /// Its path from the repository's root.
     pub(crate) path: String,
@@ -12,28 +13,30 @@ pub(crate) struct File {
     pub(crate) text: String,
 }
 
-/// All files of `generated/` that the generator writes.
-pub(crate) fn expected() -> Result<Vec<File>, Failure> {
+/// Writes `generated/`.
+pub(crate) fn write_all() -> Result<(), Failure> {
+    // Before anything takes time in which a file may be changed.
+    let generator = generator()?;
     let modules = all()?;
-    let mut files = vec![File {
-        path: "generated/manifest.toml".to_owned(),
-        text: manifest::text(&modules),
-    }];
+    write(
+        "generated/manifest.toml",
+        &manifest::text(&modules, generator),
+    )?;
+    texts(modules)
+        .iter()
+        .try_for_each(|file| write(&file.path, &file.text))
+}
+
+/// Those of modules that are kept as text.
+pub(crate) fn texts(modules: Vec<Module>) -> Vec<File> {
     let kept = modules
         .into_iter()
         .filter(|m| TEXT.contains(&m.stem.as_str()));
-    files.extend(kept.map(|module| File {
+    let file = |module: Module| File {
         path: format!("generated/src/{}.rs", module.stem),
         text: module.text,
-    }));
-    Ok(files)
-}
-
-/// Writes `generated/`.
-pub(crate) fn write_all() -> Result<(), Failure> {
-    expected()?
-        .iter()
-        .try_for_each(|file| write(&file.path, &file.text))
+    };
+    kept.map(file).collect()
 }
 
 /// Writes the modules of some robots where nothing keeps them.

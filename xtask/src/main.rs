@@ -6,6 +6,7 @@ mod book;
 mod files;
 mod freshness;
 mod generated;
+mod hash;
 mod licence;
 mod links;
 mod manifest;
@@ -24,7 +25,9 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 const HELP: &str = "\
 cargo xtask generated           write generated/: five robots as text, all in the manifest
 cargo xtask generated ROBOT...  write robots/ROBOT.toml as target/generated/ROBOT.rs, to read
-cargo xtask freshness           fail unless generated/ is what the generator writes
+cargo xtask freshness           fail unless generated/ is what the generator writes: of robots whose sources are
+                                those that it was made from, some are generated
+cargo xtask freshness all       the same, all robots are
 cargo xtask measure EFFORT FILE what generation makes of a description, in numbers (JSON)
 cargo xtask book                write docs/errors.md, and the book to target/book for mdbook
 cargo xtask links               fail unless every link of the documentation leads somewhere and errors.md is fresh
@@ -42,7 +45,8 @@ fn main() -> ExitCode {
         ["generated"] => generated::write_all(),
         ["generated", ref robots @ ..] => generated::write_to_read(robots),
         ["measure", effort, file] => measure::print(effort, file),
-        ["freshness"] => freshness::check(),
+        ["freshness"] => freshness::check(false),
+        ["freshness", "all"] => freshness::check(true),
         ["book"] => book::write_all(),
         ["links"] => links::check().and_then(|()| book::check()),
         ["package", ref options @ ..] => release::package(options),

@@ -1,8 +1,10 @@
 //! The manifest of `generated/`: what each function of every robot costs, and a hash of its text.
 //!
 //! Most modules are too large to keep and nobody reads them. A line for each of their functions shows
-//! in a diff which function changed, and whether it takes more operations than before.
+//! in a diff which function changed, and whether it takes more operations than before. Hashes of what they were
+//! made from, the generator's sources and each description, tell whether they can have changed at all.
 
+use crate::hash::hash;
 use crate::robots::Module;
 use overact_codegen::{SideBySide, WholeCost};
 use std::fmt::Write as _;
@@ -17,36 +19,49 @@ const HEADER: &str = "\
 # calls is counted in; what it takes for each step of an iteration stands behind `each_step`.
 # Of legs that run side by side in Rust stand behind `side_by_side` the operations that are done once, those of
 # each leg, how many legs there are, and how many lanes there have to be.
+# `generator` is a hash of the sources that all this was made with, `description` one of a robot's file.
 # `cargo xtask generated ROBOT` writes a module to target/generated/, to read.
+
 ";
 
-/// The manifest's text.
-pub(crate) fn text(modules: &[Module]) -> String {
-    let mut text = HEADER.to_owned();
-    for module in modules {
-        robot(&mut text, module);
-    }
+/// The manifest's text, of modules that a generator of these sources made.
+pub(crate) fn text(modules: &[Module], generator: u64) -> String {
+    let mut text = beginning(generator);
+    modules.iter().for_each(|module| text += &section(module));
     text
 }
 
-fn robot(text: &mut String, module: &Module) {
+/// What stands before the first robot.
+pub(crate) fn beginning(generator: u64) -> String {
+    format!("{HEADER}generator = \"{generator:016x}\"\n")
+}
+
+/// What is said of a robot.
+pub(crate) fn section(module: &Module) -> String {
     let Module {
         stem,
+        description,
         text: code,
         functions,
     } = module;
-    // Writing to a string doesn't fail.
-    let _ = write!(
-        text,
-        "\n[{stem}]\nlines = {}\nbytes = {}\nhash = \"{:016x}\"\n\n[{stem}.functions]\n",
+    let mut text = format!(
+        "{}lines = {}\nbytes = {}\nhash = \"{:016x}\"\n\n[{stem}.functions]\n",
+        section_beginning(stem, *description),
         code.lines().count(),
         code.len(),
         hash(code)
     );
     for (name, cost) in functions {
         let (cost, hash) = (costs(cost), hash(function(code, name)));
+        // Writing to a string doesn't fail.
         let _ = writeln!(text, "{name} = {{ {cost}, hash = \"{hash:016x}\" }}");
     }
+    text
+}
+
+/// What a robot's section begins with if its description has a hash.
+pub(crate) fn section_beginning(stem: &str, description: u64) -> String {
+    format!("\n[{stem}]\ndescription = \"{description:016x}\"\n")
 }
 
 /// What a function takes, as entries of a table.
@@ -93,26 +108,12 @@ fn function<'c>(code: &'c str, name: &str) -> &'c str {
     &rest[..end]
 }
 
-/// The 64 bits of FNV-1a, which will be the same with any compiler.
-fn hash(text: &str) -> u64 {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Module, function, hash, text};
+    use super::{Module, function, text};
     use overact_codegen::{WholeCost, lowering::Cost};
 
     const CODE: &str = "impl A {\n    pub fn one(x: f64) -> f64 {\n        x\n    }\n    #[must_use]\n    pub fn two(x: f64) -> f64 {\n        if x {\n        }\n    }\n}\n";
-
-    #[test]
-    fn hashes_are_those_of_fnv_1a() {
-        // Published values of the 64-bit variant.
-        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
-    }
 
     #[test]
     fn functions_are_cut_out_of_their_module() {
@@ -133,13 +134,14 @@ mod tests {
         };
         let module = |code: &str| Module {
             stem: "a".to_owned(),
+            description: 7,
             text: code.to_owned(),
             functions: ["one", "two"]
                 .map(|name| (name.to_owned(), WholeCost::from(cost)))
                 .to_vec(),
         };
-        let before = text(&[module(CODE)]);
-        let after = text(&[module(&CODE.replace("if x", "if y"))]);
+        let before = text(&[module(CODE)], 1);
+        let after = text(&[module(&CODE.replace("if x", "if y"))], 1);
         let changed: Vec<&str> = before
             .lines()
             .zip(after.lines())

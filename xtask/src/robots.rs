@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::files::{read, stems};
+use crate::hash::hash;
 use overact_codegen::{Effort, Request, Source, WholeCost, compile_with, emission};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,6 +14,8 @@ pub(crate) const TEXT: [&str; 5] = ["dualv", "emps", "five_bar", "rx90", "three_
 pub(crate) struct Module {
     /// Name of the description without its extension, and of the module.
     pub(crate) stem: String,
+    /// A hash of the description.
+    pub(crate) description: u64,
     /// The source file.
     pub(crate) text: String,
     /// Name and cost of each function.
@@ -51,7 +54,9 @@ pub(crate) fn several(stems: &[String]) -> Result<Vec<Module>, Failure> {
 /// The module of a robot, with all operations searched unless its description says otherwise.
 fn module(stem: &str) -> Result<Module, Failure> {
     let name = format!("robots/{stem}.toml");
-    let source = Source::new(name.as_str(), read(&name)?);
+    let text = read(&name)?;
+    let description = hash(&text);
+    let source = Source::new(name.as_str(), text);
     let request = Request {
         otherwise: Effort::Thorough,
         ..Request::default()
@@ -63,6 +68,7 @@ fn module(stem: &str) -> Result<Module, Failure> {
     let functions = functions.map(|function| (function.name.clone(), model.cost(function)));
     Ok(Module {
         stem: stem.to_owned(),
+        description,
         functions: functions.collect(),
         text: emission::file(&model, &name),
     })

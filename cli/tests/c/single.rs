@@ -67,6 +67,7 @@ fn compare(name: &str, functions: &[&str], path: &str, count: usize) -> Result<(
     });
     let questions: Vec<Question> = questions.collect();
     let at = folder(name).join("single");
+    let compiler = by_tier([compiler, compiler.unoptimised()]);
     let driver = Driver::build(compiler, &at, &files, calls.clone(), Float::F32)?;
     let texts = driver.texts()?;
     let (mut worst, mut sensitive, mut beyond) = ((0.0, ""), (0, 0.0, ""), 0);

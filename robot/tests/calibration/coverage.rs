@@ -1,8 +1,10 @@
 //! Intervals of calibrated parameters contain the truth as often as they say.
+//!
+//! `OVERACT_RANDOM_COUNT=100` draws more noise.
 
 use super::runs::{Colour, Encoder, Reading, faulty, robot, run, text};
 use overact_identification::CalibrationScope;
-use overact_tier::{by_tier, is_full};
+use overact_tier::{by_tier, drawn, is_full};
 
 /// What is wrong with the robot.
 const LINK: (&str, f64) = ("d_2_leg2", 2.8e-3);
@@ -35,7 +37,7 @@ fn intervals_cover_under_band_limited_noise() {
 /// Draws of noise of a colour; the intervals cover at least so often, and errors in units of the deviations
 /// have at most so large a root mean square.
 fn cover(colour: Colour, (least, largest): (f64, f64)) {
-    let draws = by_tier([2, 100]);
+    let draws = drawn([2, 40]);
     let described = robot(&text("dualv.toml"));
     let real = faulty(&described, &[LINK]);
     for scope in [CalibrationScope::Smallest, CalibrationScope::All] {
@@ -48,7 +50,7 @@ fn cover(colour: Colour, (least, largest): (f64, f64)) {
                     colour,
                 },
                 offsets: vec![0.0, 0.0, OFFSET.1],
-                seed: 1 + draw as u64,
+                seed: 1 + draw,
                 ..Reading::default()
             };
             let found = described.calibrate(&[run(&real, &reading)], scope);

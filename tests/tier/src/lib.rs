@@ -2,7 +2,10 @@
 //!
 //! `cargo test --workspace` runs the default tier: every test, over few states, mechanisms and seeds.
 //! `OVERACT_TESTS=full cargo test --workspace` runs the full tier: the same tests over many. A test
-//! asks here how much it has to do; nothing else reads the variable.
+//! asks here how much it has to do; nothing else reads the variables.
+
+/// The environment variable that chooses how many robots, or draws of noise, are taken at random.
+pub const COUNT: &str = "OVERACT_RANDOM_COUNT";
 
 /// The environment variable that chooses the tier.
 pub const VARIABLE: &str = "OVERACT_TESTS";
@@ -28,4 +31,18 @@ pub fn is_full() -> bool {
 #[must_use]
 pub fn by_tier<T>([default, full]: [T; 2]) -> T {
     if is_full() { full } else { default }
+}
+
+/// How many robots, or draws of noise, are taken at random: as many as is asked for, or as the tier has.
+///
+/// # Panics
+///
+/// If what is asked for is no number.
+#[must_use]
+pub fn drawn(by_tier: [u64; 2]) -> u64 {
+    let Some(count) = std::env::var_os(COUNT) else {
+        return self::by_tier(by_tier);
+    };
+    let number = count.to_str().and_then(|text| text.parse().ok());
+    number.unwrap_or_else(|| panic!("{COUNT} is a number, not {}", count.display()))
 }

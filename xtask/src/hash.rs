@@ -1,0 +1,68 @@
+//! Hashes of texts and of the generator's sources.
+
+use crate::Failure;
+use crate::files::repository;
+use std::fs;
+use std::path::Path;
+
+/// The folders and files that what is generated depends on: the generator's sources, how this program asks it, and the
+/// versions of what it stands on.
+const SOURCES: [&str; 5] = [
+    "codegen/src",
+    "core/src",
+    "xtask/src/robots.rs",
+    "xtask/src/manifest.rs",
+    "Cargo.lock",
+];
+
+/// The 64 bits of FNV-1a, which will be the same with any compiler.
+pub(crate) fn hash(text: &str) -> u64 {
+    further(0xcbf2_9ce4_8422_2325, text.as_bytes())
+}
+
+/// The hash of the sources, names of files and what they hold.
+pub(crate) fn generator() -> Result<u64, Failure> {
+    let mut all = hash("");
+    for source in SOURCES {
+        add(&repository(source), &mut all).map_err(|error| format!("{source}: {error}"))?;
+    }
+    Ok(all)
+}
+
+fn add(path: &Path, all: &mut u64) -> Result<(), Failure> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    *all = further(*all, name.as_bytes());
+    if !path.is_dir() {
+        *all = further(*all, &fs::read(path)?);
+        return Ok(());
+    }
+    let entries = fs::read_dir(path)?.map(|entry| Ok(entry?.path()));
+    let mut paths = entries.collect::<Result<Vec<_>, std::io::Error>>()?;
+    paths.sort();
+    paths.iter().try_for_each(|path| add(path, all))
+}
+
+fn further(hash: u64, bytes: &[u8]) -> u64 {
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(hash, step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{generator, hash};
+
+    #[test]
+    fn hashes_are_those_of_fnv_1a() {
+        // Published values of the 64-bit variant.
+        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    #[test]
+    fn sources_have_one_hash() {
+        let once = generator().expect("the sources");
+        assert_eq!(once, generator().expect("the sources"));
+        assert_ne!(once, hash(""));
+    }
+}
