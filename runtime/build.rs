@@ -1,4 +1,5 @@
-//! Says whether sines and cosines are computed in vector registers (`cfg(vectors)`).
+//! Says whether sines and cosines are computed in vector registers (`cfg(vectors)`), and whether functions find out at run
+//! time how wide these are (`cfg(dispatch)`).
 //!
 //! No attribute of the language knows the level of optimisation, and what is best differs by a factor of fifty.
 //! This crate's functions of many angles are compiled with the crate that calls them, so a build counts as
@@ -8,7 +9,7 @@ use std::env::var;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rustc-check-cfg=cfg(vectors)");
+    println!("cargo::rustc-check-cfg=cfg(vectors, dispatch)");
     let is = |name: &str, values: &[&str]| var(name).is_ok_and(|x| values.contains(&x.as_str()));
     let feature =
         |name: &str| var("CARGO_CFG_TARGET_FEATURE").is_ok_and(|x| x.split(',').any(|f| f == name));
@@ -17,5 +18,9 @@ fn main() {
         || feature("simd128");
     if registers && is("OPT_LEVEL", &["2", "3"]) && is("PROFILE", &["release"]) {
         println!("cargo::rustc-cfg=vectors");
+        let is_wanted = var("CARGO_FEATURE_DISPATCH").is_ok();
+        if is_wanted && is("CARGO_CFG_TARGET_ARCH", &["x86_64"]) && !feature("avx2") {
+            println!("cargo::rustc-cfg=dispatch");
+        }
     }
 }

@@ -171,7 +171,7 @@ def time(cell, own, core, rounds):
     timing.write_states(path, given)
     inputs = [(name, len(value)) for name, value in given[0].items()]
     size = int(np.prod(cell.function.shape))
-    programs = [(("default", ""), own[0]), (("native", ""), own[1])]
+    programs = list(zip([("default", ""), ("native", ""), ("plain", "")], own, strict=True))
     for index, peer in enumerate(cell.peers):
         for build in [*DEFAULT, *NATIVE, *FAST]:
             compiled = timing.c_program(peer.title, f"{cell.name}_{index}", peer.code, inputs, size, build)
@@ -183,7 +183,8 @@ def time(cell, own, core, rounds):
     times = timing.compare([program for _, program in programs], path, core, rounds)
     cell.times = dict(zip((key for key, _ in programs), times, strict=True))
     fastest = min((k for k in cell.times if k[1] and k[0] in [b.title for b in DEFAULT]), key=cell.times.get)
-    cell.instructions = [instructions.per_call(p, path) for p in (own[0], dict(programs)[fastest])]
+    # Valgrind does not know all instructions that are found when a program runs.
+    cell.instructions = [instructions.per_call(p, path) for p in (own[2], dict(programs)[fastest])]
 
 
 def line(robot, cell):
@@ -200,13 +201,16 @@ def line(robot, cell):
 
 
 def counts(robot, cell):
-    """Instructions of default builds and misses of the instruction cache, and whose the peer's are."""
+    """Time without vectors that are found when it runs, and beside the fastest peer's, instructions and misses of the
+    instruction cache of that build, and whose the peer's are."""
     (own, missed), (peer, peers_missed) = cell.instructions
     ratio = f"{own / peer:.2f}"
     names = [cell.fastest(builds)[1] for builds in (DEFAULT, NATIVE, FAST)]
     # A difference of two runs: a little below zero where there is none.
     misses = [f"{round(number, 1) + 0.0:.1f}" for number in (missed, peers_missed)]
-    return [f"{ROBOTS[robot]}, {cell.title}", f"{own:.0f}", f"{peer:.0f}", ratio, *misses, *names]
+    plain = cell.times[("plain", "")]
+    beside = f"{plain / cell.fastest(DEFAULT)[0]:.2f}"
+    return [f"{ROBOTS[robot]}, {cell.title}", f"{plain:.0f}", beside, f"{own:.0f}", f"{peer:.0f}", ratio, *misses, *names]
 
 
 def measured(only, core, rounds):
@@ -217,7 +221,8 @@ def measured(only, core, rounds):
         print(f"{ROBOTS[robot]} …", file=sys.stderr, flush=True)
         found = list(cells(robot))
         functions = [cell.function for cell in found]
-        own = zip(timing.rust_programs(functions), timing.rust_programs(functions, native=True), strict=True)
+        builds = (timing.DISPATCHED, timing.NATIVE, timing.PLAIN)
+        own = zip(*(timing.rust_programs(functions, build=build) for build in builds), strict=True)
         for cell, programs in zip(found, own, strict=True):
             print(f"{ROBOTS[robot]}, {cell.title}: times …", file=sys.stderr, flush=True)
             time(cell, programs, core, rounds)
@@ -228,5 +233,6 @@ def table(found):
     """The cells as Markdown: operations and times, then what does not depend on other work."""
     header = ["function", "operations", "peer", "ratio", "default, ns", "peer", "ratio", "native, ns", "peer", "ratio"]
     times = report.table([*header, "peer, -ffast-math", "ratio"], [line(robot, cell) for robot, cell in found])
-    header = ["function", "instructions", "peer", "ratio", "misses", "peer", "fastest, default", "native", "-ffast-math"]
+    header = ["function", "no dispatch, ns", "ratio", "instructions", "peer", "ratio", "misses", "peer"]
+    header += ["fastest, default", "native", "-ffast-math"]
     return f"{times}\n\n{report.table(header, [counts(robot, cell) for robot, cell in found])}"

@@ -85,7 +85,12 @@ def c_program(title, name, source, inputs, outputs, build=NATIVE):
     return Program(title, binary)
 
 
-def rust_crate(functions):
+#: How overact's functions are built: for any processor of the kind, with vectors that are found when they run or without
+#: these, or for this processor. Each has the features of the runtime and a folder of its own.
+DISPATCHED, PLAIN, NATIVE = ("dispatch", "target"), ("std", "target-plain"), ("std", "target-native")
+
+
+def rust_crate(functions, features):
     """A crate with the modules that hold overact's functions, in cargo's default release profile."""
     folder = BUILD / "ours"
     robots = sorted({function.robot for function in functions})
@@ -96,26 +101,28 @@ def rust_crate(functions):
         write(folder / "src" / f"{robot}.rs", done.stdout)
     modules = "".join(f"pub mod {robot};\n" for robot in robots)
     write(folder / "src" / "lib.rs", (TEMPLATES / "lib.rs").read_text() + modules)
-    write(folder / "Cargo.toml", (TEMPLATES / "Cargo.toml").read_text().replace("@ROOT@", str(ROOT)))
+    manifest = (TEMPLATES / "Cargo.toml").read_text()
+    write(folder / "Cargo.toml", manifest.replace("@ROOT@", str(ROOT)).replace("@FEATURES@", features))
     return folder
 
 
-def rust_programs(functions, template="main.rs", dependencies=(), native=False):
-    """Compiles a program for each of overact's functions, for any processor of the kind or for this one."""
-    folder = rust_crate(functions)
+def rust_programs(functions, template="main.rs", dependencies=(), build=DISPATCHED):
+    """Compiles a program for each of overact's functions."""
+    features, name_of_target = build
+    folder = rust_crate(functions, features)
+    target = folder / name_of_target
     shutil.rmtree(folder / "src" / "bin", ignore_errors=True)
     programs = []
     for function in functions:
         name = f"{function.robot}_{function.rust_name}_{template.removesuffix('.rs')}"
         write(folder / "src" / "bin" / f"{name}.rs", rust_main(function, template))
-        target = folder / ("target-native" if native else "target")
         programs.append(Program("overact", target / "release" / name))
     if dependencies:
         with open(folder / "Cargo.toml", "a") as manifest:
             manifest.writelines(f'[dependencies.{d}]\npath = "{ROOT / p}"\n' for d, p in dependencies)
     environment = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
-    environment["CARGO_TARGET_DIR"] = str(folder / ("target-native" if native else "target"))
-    if native:
+    environment["CARGO_TARGET_DIR"] = str(target)
+    if build == NATIVE:
         environment["RUSTFLAGS"] = "-C target-cpu=native"
     subprocess.run(["cargo", "build", "--quiet", "--release"], cwd=folder, env=environment, check=True)
     return programs

@@ -1056,194 +1056,202 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
-        let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let a1_x_left = 49.05 * l1_y_left;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
-        let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
-        let inv_l_2_dvx = INV_L_2 * acceleration[0];
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
-        let t4_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
-        let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
-        let m_platform_on_vy = acceleration[1] + 9.81;
-        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-        let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
-        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let t5_left = ::overact::math::signed(k_left, qd_2_left);
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
-        let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
-        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let t4_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
-        let m_2_right_on_vx = g1_vx_right * t4_right;
-        let m_2_right_on_vy = g1_vy_right * t4_right;
-        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let t5_right = ::overact::math::sign(minus_qd_2_right) / det_right;
-        ::core::result::Result::Ok([
-            [
-                zz_1_left_on_vx, -(minus_g1_vx_left * a1_y_left), minus_g1_vx_left * a1_x_left,
-                zz_1_left_on_vx, minus_g1_vx_left * minus_rate_1_left,
-                ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left), -minus_g1_vx_left,
-                zz_2_left_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
-                        * (1.5625 * zz_2_left_on_vx
-                            - INV_L_1_SQUARED * minus_m_2_left_on_vx),
-                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vx_left * a2_x_left),
-                -minus_m_2_left_on_vx,
-                d_x_left * t5_left,
-                zz_1_right_on_vx,
-                g1_vx_right * a1_y_right,
-                -(g1_vx_right * a1_x_right),
-                zz_1_right_on_vx,
-                g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right),
-                g1_vx_right,
-                zz_2_right_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vx
-                            + 1.5625 * zz_2_right_on_vx),
-                g1_vx_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
-                m_2_right_on_vx,
-                d_x_right * t5_right,
-                acceleration[0],
-            ],
-            [
-                zz_1_left_on_vy, -(minus_g1_vy_left * a1_y_left), minus_g1_vy_left * a1_x_left,
-                zz_1_left_on_vy, minus_g1_vy_left * minus_rate_1_left,
-                ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left), -minus_g1_vy_left,
-                zz_2_left_on_vy,
-                inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (1.5625 * zz_2_left_on_vy
-                            - INV_L_1_SQUARED * minus_m_2_left_on_vy),
-                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vy_left * a2_x_left),
-                -minus_m_2_left_on_vy,
-                pose[1] * t5_left,
-                zz_1_right_on_vy,
-                g1_vy_right * a1_y_right,
-                -(g1_vy_right * a1_x_right),
-                zz_1_right_on_vy,
-                g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right),
-                g1_vy_right,
-                zz_2_right_on_vy,
-                inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vy
-                            + 1.5625 * zz_2_right_on_vy),
-                g1_vy_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
-                m_2_right_on_vy,
-                pose[1] * t5_right,
-                m_platform_on_vy,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
+            let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
+            let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
+            let inv_l_2_dvx = INV_L_2 * acceleration[0];
+            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
+                - L_1 * minus_rate_dot_1_left;
+            let t4_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
+            let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
+            let m_platform_on_vy = acceleration[1] + 9.81;
+            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+            let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
+            let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let t5_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let rate_dot_1_right = k_right
+                * (a_on_f1_right + rate_1_squared_right * t3_right);
+            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+            let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+            let t4_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            let m_2_right_on_vx = g1_vx_right * t4_right;
+            let m_2_right_on_vy = g1_vy_right * t4_right;
+            let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let t5_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
+            ::core::result::Result::Ok([
+                [
+                    zz_1_left_on_vx, -(minus_g1_vx_left * a1_y_left), minus_g1_vx_left * a1_x_left,
+                    zz_1_left_on_vx, minus_g1_vx_left * minus_rate_1_left,
+                    ::overact::math::wide::signed(
+                        minus_g1_vx_left,
+                        minus_rate_1_left,
+                    ),
+                    -minus_g1_vx_left,
+                    zz_2_left_on_vx,
+                    inv_l_2_dvx
+                        - 0.16
+                            * (1.5625 * zz_2_left_on_vx
+                                - INV_L_1_SQUARED * minus_m_2_left_on_vx),
+                    -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                        + g2_vx_left * a2_x_left),
+                    -minus_m_2_left_on_vx,
+                    d_x_left * t5_left,
+                    zz_1_right_on_vx,
+                    g1_vx_right * a1_y_right,
+                    -(g1_vx_right * a1_x_right),
+                    zz_1_right_on_vx,
+                    g1_vx_right * rate_1_right,
+                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
+                    g1_vx_right,
+                    zz_2_right_on_vx,
+                    inv_l_2_dvx
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vx
+                                + 1.5625 * zz_2_right_on_vx),
+                    g1_vx_right * minus_inv_l_2_a_on_f2_right
+                        + minus_g2_vx_right * a2_x_right,
+                    m_2_right_on_vx,
+                    d_x_right * t5_right,
+                    acceleration[0],
+                ],
+                [
+                    zz_1_left_on_vy, -(minus_g1_vy_left * a1_y_left), minus_g1_vy_left * a1_x_left,
+                    zz_1_left_on_vy, minus_g1_vy_left * minus_rate_1_left,
+                    ::overact::math::wide::signed(
+                        minus_g1_vy_left,
+                        minus_rate_1_left,
+                    ),
+                    -minus_g1_vy_left,
+                    zz_2_left_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        - 0.16
+                            * (1.5625 * zz_2_left_on_vy
+                                - INV_L_1_SQUARED * minus_m_2_left_on_vy),
+                    -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                        + g2_vy_left * a2_x_left),
+                    -minus_m_2_left_on_vy,
+                    pose[1] * t5_left,
+                    zz_1_right_on_vy,
+                    g1_vy_right * a1_y_right,
+                    -(g1_vy_right * a1_x_right),
+                    zz_1_right_on_vy,
+                    g1_vy_right * rate_1_right,
+                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
+                    g1_vy_right,
+                    zz_2_right_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vy
+                                + 1.5625 * zz_2_right_on_vy),
+                    g1_vy_right * minus_inv_l_2_a_on_f2_right
+                        + minus_g2_vy_right * a2_x_right,
+                    m_2_right_on_vy,
+                    pose[1] * t5_right,
+                    m_platform_on_vy,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1272,166 +1280,182 @@ impl FiveBar {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / l_2
-        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        // --- sines and cosines
-        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3],
-        ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        // --- left
-        let c12_left = c1_left * c2_left - s1_left * s2_left;
-        let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let k1_left = INV_L_1 / s2_left;
-        let g1_vx_left = c12_left * k1_left;
-        let k2_left = k1_left * L_1_PER_L_2;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let minus_rate_2_left = minus_g2_vx_left * twist[0]
-            + minus_g2_vy_left * twist[1];
-        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
-        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
-            + l_2_rate_2_squared_left;
-        let g1_vy_left = s12_left * k1_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let rate_1_squared_left = rate_1_left * rate_1_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
-        let rate_dot_1_left = k1_left
-            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
-        let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
-        let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
-        let a1_y_left = 9.81 * c1_left;
-        let a1_x_left = 9.81 * s1_left;
-        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
-            + l_1_rate_1_squared_left;
-        let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
-        let zz_2_left_on_vy = minus_g2_vy_left * minus_rate_dot_2_left;
-        let inv_l_2_dvx = INV_L_2 * acceleration[0];
-        let t1_left = L_1 * (a1_y_left + L_1 * rate_dot_1_left);
-        let m_2_left_on_vx = g1_vx_left * t1_left;
-        let m_platform_on_vy = acceleration[1] + 9.81;
-        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-        let m_2_left_on_vy = g1_vy_left * t1_left;
-        let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
-        let a2_x_left = a_on_f1_left + s12_left * 9.81;
-        let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-        // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let k1_right = INV_L_1 / s2_right;
-        let g1_vx_right = c12_right * k1_right;
-        let k2_right = L_1_PER_L_2 * k1_right;
-        let minus_g2_vx_right = c1_right * k2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let g1_vy_right = s12_right * k1_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-        let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
-        let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_right = 9.81 * s1_right;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
-        let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
-        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
-        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
-        let m_2_right_on_vx = g1_vx_right * t1_right;
-        let m_2_right_on_vy = g1_vy_right * t1_right;
-        let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
-        let a2_x_right = a_on_f1_right + 9.81 * s12_right;
-        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-        ::core::result::Result::Ok([
-            [
-                zz_1_left_on_vx, g1_vx_left * a1_y_left, -(g1_vx_left * a1_x_left), zz_1_left_on_vx,
-                g1_vx_left * rate_1_left, ::overact::math::signed(g1_vx_left, rate_1_left),
-                g1_vx_left, zz_2_left_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx),
-                g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
-                    + minus_g2_vx_left * a2_x_left,
-                m_2_left_on_vx,
-                ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left),
-                zz_1_right_on_vx,
-                g1_vx_right * a1_y_right,
-                -(g1_vx_right * a1_x_right),
-                zz_1_right_on_vx,
-                g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right),
-                g1_vx_right,
-                zz_2_right_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vx
-                            + 1.5625 * zz_2_right_on_vx),
-                g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
-                m_2_right_on_vx,
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
-                acceleration[0],
-            ],
-            [
-                zz_1_left_on_vy, g1_vy_left * a1_y_left, -(g1_vy_left * a1_x_left), zz_1_left_on_vy,
-                g1_vy_left * rate_1_left, ::overact::math::signed(g1_vy_left, rate_1_left),
-                g1_vy_left, zz_2_left_on_vy,
-                inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy),
-                g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
-                    + minus_g2_vy_left * a2_x_left,
-                m_2_left_on_vy,
-                ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left),
-                zz_1_right_on_vy,
-                g1_vy_right * a1_y_right,
-                -(g1_vy_right * a1_x_right),
-                zz_1_right_on_vy,
-                g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right),
-                g1_vy_right,
-                zz_2_right_on_vy,
-                inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vy
-                            + 1.5625 * zz_2_right_on_vy),
-                g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
-                m_2_right_on_vy,
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
-                m_platform_on_vy,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 5.0;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1 / l_2
+            const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            // --- sines and cosines
+            let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3],
+            ]);
+            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            // --- left
+            let c12_left = c1_left * c2_left - s1_left * s2_left;
+            let s12_left = s1_left * c2_left + c1_left * s2_left;
+            let k1_left = INV_L_1 / s2_left;
+            let g1_vx_left = c12_left * k1_left;
+            let k2_left = k1_left * L_1_PER_L_2;
+            let minus_g2_vx_left = c1_left * k2_left;
+            let minus_g2_vy_left = s1_left * k2_left;
+            let minus_rate_2_left = minus_g2_vx_left * twist[0]
+                + minus_g2_vy_left * twist[1];
+            let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+            let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+            let a_on_f1_left = c12_left * acceleration[0]
+                + s12_left * acceleration[1] + l_2_rate_2_squared_left;
+            let g1_vy_left = s12_left * k1_left;
+            let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
+            let rate_1_squared_left = rate_1_left * rate_1_left;
+            let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+            let rate_dot_1_left = k1_left
+                * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+            let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
+            let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
+            let a1_y_left = 9.81 * c1_left;
+            let a1_x_left = 9.81 * s1_left;
+            let minus_a_on_f2_left = c1_left * acceleration[0]
+                + s1_left * acceleration[1] + l_1_rate_1_squared_left;
+            let minus_rate_dot_2_left = k2_left
+                * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+            let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
+            let zz_2_left_on_vy = minus_g2_vy_left * minus_rate_dot_2_left;
+            let inv_l_2_dvx = INV_L_2 * acceleration[0];
+            let t1_left = L_1 * (a1_y_left + L_1 * rate_dot_1_left);
+            let m_2_left_on_vx = g1_vx_left * t1_left;
+            let m_platform_on_vy = acceleration[1] + 9.81;
+            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+            let m_2_left_on_vy = g1_vy_left * t1_left;
+            let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
+            let a2_x_left = a_on_f1_left + s12_left * 9.81;
+            let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+            let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+            let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+            // --- right
+            let c12_right = c1_right * c2_right - s1_right * s2_right;
+            let s12_right = s1_right * c2_right + c1_right * s2_right;
+            let k1_right = INV_L_1 / s2_right;
+            let g1_vx_right = c12_right * k1_right;
+            let k2_right = L_1_PER_L_2 * k1_right;
+            let minus_g2_vx_right = c1_right * k2_right;
+            let minus_g2_vy_right = s1_right * k2_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+            let a_on_f1_right = c12_right * acceleration[0]
+                + s12_right * acceleration[1] + l_2_rate_2_squared_right;
+            let g1_vy_right = s12_right * k1_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+            let rate_dot_1_right = k1_right
+                * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+            let a1_y_right = 9.81 * c1_right;
+            let a1_x_right = 9.81 * s1_right;
+            let minus_a_on_f2_right = c1_right * acceleration[0]
+                + s1_right * acceleration[1] + l_1_rate_1_squared_right;
+            let minus_rate_dot_2_right = k2_right
+                * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+            let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+            let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
+            let m_2_right_on_vx = g1_vx_right * t1_right;
+            let m_2_right_on_vy = g1_vy_right * t1_right;
+            let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
+            let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+            let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
+            ::core::result::Result::Ok([
+                [
+                    zz_1_left_on_vx, g1_vx_left * a1_y_left, -(g1_vx_left * a1_x_left),
+                    zz_1_left_on_vx, g1_vx_left * rate_1_left,
+                    ::overact::math::wide::signed(g1_vx_left, rate_1_left), g1_vx_left,
+                    zz_2_left_on_vx,
+                    inv_l_2_dvx
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_left_on_vx
+                                + 1.5625 * zz_2_left_on_vx),
+                    g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+                        + minus_g2_vx_left * a2_x_left,
+                    m_2_left_on_vx,
+                    ::overact::math::wide::signed(
+                        minus_gq2_vx_left,
+                        minus_qd_2_left,
+                    ),
+                    zz_1_right_on_vx,
+                    g1_vx_right * a1_y_right,
+                    -(g1_vx_right * a1_x_right),
+                    zz_1_right_on_vx,
+                    g1_vx_right * rate_1_right,
+                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
+                    g1_vx_right,
+                    zz_2_right_on_vx,
+                    inv_l_2_dvx
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vx
+                                + 1.5625 * zz_2_right_on_vx),
+                    g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+                        + minus_g2_vx_right * a2_x_right,
+                    m_2_right_on_vx,
+                    ::overact::math::wide::signed(
+                        minus_gq2_vx_right,
+                        minus_qd_2_right,
+                    ),
+                    acceleration[0],
+                ],
+                [
+                    zz_1_left_on_vy, g1_vy_left * a1_y_left, -(g1_vy_left * a1_x_left),
+                    zz_1_left_on_vy, g1_vy_left * rate_1_left,
+                    ::overact::math::wide::signed(g1_vy_left, rate_1_left), g1_vy_left,
+                    zz_2_left_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_left_on_vy
+                                + 1.5625 * zz_2_left_on_vy),
+                    g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+                        + minus_g2_vy_left * a2_x_left,
+                    m_2_left_on_vy,
+                    ::overact::math::wide::signed(
+                        minus_gq2_vy_left,
+                        minus_qd_2_left,
+                    ),
+                    zz_1_right_on_vy,
+                    g1_vy_right * a1_y_right,
+                    -(g1_vy_right * a1_x_right),
+                    zz_1_right_on_vy,
+                    g1_vy_right * rate_1_right,
+                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
+                    g1_vy_right,
+                    zz_2_right_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vy
+                                + 1.5625 * zz_2_right_on_vy),
+                    g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+                        + minus_g2_vy_right * a2_x_right,
+                    m_2_right_on_vy,
+                    ::overact::math::wide::signed(
+                        minus_gq2_vy_right,
+                        minus_qd_2_right,
+                    ),
+                    m_platform_on_vy,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1461,212 +1485,230 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = 1.0 / t1;
-        let g2_vy_left = l1_y_left * k_left;
-        let vy = t2
-            * (g1_vx_right * actuator_velocities[0]
-                + minus_g1_vx_left * actuator_velocities[1]);
-        let minus_vx = t2
-            * (g1_vy_right * actuator_velocities[0]
-                + minus_g1_vy_left * actuator_velocities[1]);
-        // --- left
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = t2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-        let dvy = t2
-            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        // --- left
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t2_left);
-        let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
-        let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
-        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-            + L_1 * actuator_accelerations[0];
-        let t3_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
-        let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
-        let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
-        let m_platform_on_vy = dvy + 9.81;
-        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-        let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
-        let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let t4_left = ::overact::math::sign(qd_2_left) / det_left;
-        // --- right
-        let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
-        let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t2_right);
-        let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
-        let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
-        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-            + L_1 * actuator_accelerations[1];
-        let t3_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
-        let m_2_right_on_vx = g1_vx_right * t3_right;
-        let m_2_right_on_vy = g1_vy_right * t3_right;
-        let c2_right = t2_right * L_1_PER_HALF_SQUARED;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        let t4_right = ::overact::math::sign(qd_2_right) / det_right;
-        ::core::result::Result::Ok([
-            [
-                -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
-                minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx,
-                -(minus_g1_vx_left * actuator_velocities[0]),
-                -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                -minus_g1_vx_left, -minus_zz_2_left_on_vx,
-                L_1_SQUARED_PER_L_2
-                    * (INV_L_1_SQUARED * minus_m_2_left_on_vx
-                        + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx,
-                minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
-                -minus_m_2_left_on_vx,
-                d_x_left * t4_left,
-                zz_1_right_on_vx,
-                g1_vx_right * bias_a1_y_right,
-                -(g1_vx_right * bias_a1_x_right),
-                zz_1_right_on_vx,
-                g1_vx_right * actuator_velocities[1],
-                ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
-                g1_vx_right,
-                -minus_zz_2_right_on_vx,
-                -(minus_inv_l_2_dvx
-                    + L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vx
-                            - 1.5625 * minus_zz_2_right_on_vx)),
-                minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
-                m_2_right_on_vx,
-                -(d_x_right * t4_right),
-                -minus_dvx,
-            ],
-            [
-                -minus_zz_1_left_on_vy, -(minus_g1_vy_left * bias_a1_y_left),
-                minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy,
-                -(minus_g1_vy_left * actuator_velocities[0]),
-                -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                -minus_g1_vy_left, -minus_zz_2_left_on_vy,
-                inv_l_2_m_platform_on_vy
-                    + L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * minus_m_2_left_on_vy
-                            + 1.5625 * minus_zz_2_left_on_vy),
-                minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
-                -minus_m_2_left_on_vy,
-                pose[1] * t4_left,
-                zz_1_right_on_vy,
-                g1_vy_right * bias_a1_y_right,
-                -(g1_vy_right * bias_a1_x_right),
-                zz_1_right_on_vy,
-                g1_vy_right * actuator_velocities[1],
-                ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
-                g1_vy_right,
-                -minus_zz_2_right_on_vy,
-                inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1_SQUARED * m_2_right_on_vy
-                            - 1.5625 * minus_zz_2_right_on_vy),
-                minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
-                m_2_right_on_vy,
-                -(pose[1] * t4_right),
-                m_platform_on_vy,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = 1.0 / t1;
+            let g2_vy_left = l1_y_left * k_left;
+            let vy = t2
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]);
+            let minus_vx = t2
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1]);
+            // --- left
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = t2
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            let dvy = t2
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+            // --- left
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t2_left);
+            let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
+            let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            let t3_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+            let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
+            let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
+            let m_platform_on_vy = dvy + 9.81;
+            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+            let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
+            let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
+            let c2_left = t2_left * 20.0;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let t4_left = ::overact::math::wide::sign(qd_2_left) / det_left;
+            // --- right
+            let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
+            let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t2_right);
+            let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
+            let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
+            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+                + L_1 * actuator_accelerations[1];
+            let t3_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+            let m_2_right_on_vx = g1_vx_right * t3_right;
+            let m_2_right_on_vy = g1_vy_right * t3_right;
+            let c2_right = t2_right * 20.0;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+            let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            ::core::result::Result::Ok([
+                [
+                    -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
+                    minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx,
+                    -(minus_g1_vx_left * actuator_velocities[0]),
+                    -::overact::math::wide::signed(
+                        minus_g1_vx_left,
+                        actuator_velocities[0],
+                    ),
+                    -minus_g1_vx_left,
+                    -minus_zz_2_left_on_vx,
+                    0.16
+                        * (INV_L_1_SQUARED * minus_m_2_left_on_vx
+                            + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx,
+                    minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
+                    -minus_m_2_left_on_vx,
+                    d_x_left * t4_left,
+                    zz_1_right_on_vx,
+                    g1_vx_right * bias_a1_y_right,
+                    -(g1_vx_right * bias_a1_x_right),
+                    zz_1_right_on_vx,
+                    g1_vx_right * actuator_velocities[1],
+                    ::overact::math::wide::signed(
+                        g1_vx_right,
+                        actuator_velocities[1],
+                    ),
+                    g1_vx_right,
+                    -minus_zz_2_right_on_vx,
+                    -(minus_inv_l_2_dvx
+                        + 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vx
+                                - 1.5625 * minus_zz_2_right_on_vx)),
+                    minus_g2_vx_right * a2_x_right
+                        - g1_vx_right * inv_l_2_a_on_f2_right,
+                    m_2_right_on_vx,
+                    -(d_x_right * t4_right),
+                    -minus_dvx,
+                ],
+                [
+                    -minus_zz_1_left_on_vy, -(minus_g1_vy_left * bias_a1_y_left),
+                    minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy,
+                    -(minus_g1_vy_left * actuator_velocities[0]),
+                    -::overact::math::wide::signed(
+                        minus_g1_vy_left,
+                        actuator_velocities[0],
+                    ),
+                    -minus_g1_vy_left,
+                    -minus_zz_2_left_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        + 0.16
+                            * (INV_L_1_SQUARED * minus_m_2_left_on_vy
+                                + 1.5625 * minus_zz_2_left_on_vy),
+                    minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
+                    -minus_m_2_left_on_vy,
+                    pose[1] * t4_left,
+                    zz_1_right_on_vy,
+                    g1_vy_right * bias_a1_y_right,
+                    -(g1_vy_right * bias_a1_x_right),
+                    zz_1_right_on_vy,
+                    g1_vy_right * actuator_velocities[1],
+                    ::overact::math::wide::signed(
+                        g1_vy_right,
+                        actuator_velocities[1],
+                    ),
+                    g1_vy_right,
+                    -minus_zz_2_right_on_vy,
+                    inv_l_2_m_platform_on_vy
+                        - 0.16
+                            * (INV_L_1_SQUARED * m_2_right_on_vy
+                                - 1.5625 * minus_zz_2_right_on_vy),
+                    minus_g2_vy_right * a2_x_right
+                        - g1_vy_right * inv_l_2_a_on_f2_right,
+                    m_2_right_on_vy,
+                    -(pose[1] * t4_right),
+                    m_platform_on_vy,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -1690,184 +1732,191 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        let a1_y_left = 49.05 * l1_x_left;
-        let a1_x_left = 49.05 * l1_y_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
-        let g2_a2_left = k_left * inv_det_ja;
-        let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
-        let t1_platform = acceleration[1] + 9.81;
-        let m_platform_on_q1_left = vy_by_a1 * t1_platform
-            - minus_vx_by_a1 * acceleration[0];
-        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-        let m_platform_on_q1_right = vy_by_a2 * t1_platform
-            - minus_vx_by_a2 * acceleration[0];
-        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-        // --- left
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let g2_a1_right = k_right * inv_det_ja;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
-        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
-            - minus_g2_vy_right * vy_by_a2;
-        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        ::core::result::Result::Ok([
-            [
-                -minus_rate_dot_1_left, a1_y_left, -a1_x_left, -minus_rate_dot_1_left,
-                -minus_rate_1_left, -::overact::math::sign(minus_rate_1_left), 1.0,
-                zz_2_left_on_q1_left,
-                inv_l_2_m_platform_on_q1_left
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
-                            + 1.5625 * zz_2_left_on_q1_left),
-                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
-                L_1 * a1_y_plus_l_1_rate_dot_1_left,
-                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                -minus_zz_2_right_on_q1_left,
-                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
-                -(g2_a1_right * a2_x_right),
-                0.0,
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
-                m_platform_on_q1_left,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
-                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
-                -(g2_a2_left * a2_x_left), 0.0, ::overact::math::signed(g2_a2_left, qd_2_left),
-                rate_dot_1_right, a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
-                ::overact::math::sign(rate_1_right), 1.0, -minus_zz_2_right_on_q1_right,
-                inv_l_2_m_platform_on_q1_right
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
-                            - 1.5625 * minus_zz_2_right_on_q1_right),
-                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                L_1 * a1_y_plus_l_1_rate_dot_1_right,
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
-                m_platform_on_q1_right,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 5.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let inv_rho_squared_left = 1.0 / rho_squared_left;
+            let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+            let h_squared_left = L_1_SQUARED * inv_rho_squared_left
+                - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            let a1_y_left = 49.05 * l1_x_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let det_ja = minus_g1_vx_left * g1_vy_right
+                - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let vy_by_a1 = g1_vx_right * inv_det_ja;
+            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
+            let g2_a2_left = k_left * inv_det_ja;
+            let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+            let t1_platform = acceleration[1] + 9.81;
+            let m_platform_on_q1_left = vy_by_a1 * t1_platform
+                - minus_vx_by_a1 * acceleration[0];
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
+                - L_1 * minus_rate_dot_1_left;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let m_platform_on_q1_right = vy_by_a2 * t1_platform
+                - minus_vx_by_a2 * acceleration[0];
+            let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+            // --- left
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let rate_dot_1_right = k_right
+                * (a_on_f1_right + rate_1_squared_right * t3_right);
+            let a1_y_right = 49.05 * l1_x_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            let g2_a1_right = k_right * inv_det_ja;
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+            let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+                - minus_g2_vy_right * vy_by_a2;
+            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+            let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            ::core::result::Result::Ok([
+                [
+                    -minus_rate_dot_1_left, a1_y_left, -a1_x_left, -minus_rate_dot_1_left,
+                    -minus_rate_1_left, -::overact::math::wide::sign(minus_rate_1_left), 1.0,
+                    zz_2_left_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left
+                        - 0.16
+                            * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
+                                + 1.5625 * zz_2_left_on_q1_left),
+                    INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                    L_1 * a1_y_plus_l_1_rate_dot_1_left,
+                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    -minus_zz_2_right_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left
+                        + L_2 * minus_zz_2_right_on_q1_left,
+                    -(g2_a1_right * a2_x_right),
+                    0.0,
+                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
+                    m_platform_on_q1_left,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                    -(g2_a2_left * a2_x_left), 0.0,
+                    ::overact::math::wide::signed(g2_a2_left, qd_2_left), rate_dot_1_right,
+                    a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
+                    ::overact::math::wide::sign(rate_1_right), 1.0, -minus_zz_2_right_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right
+                        - 0.16
+                            * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
+                                - 1.5625 * minus_zz_2_right_on_q1_right),
+                    INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                    L_1 * a1_y_plus_l_1_rate_dot_1_right,
+                    -::overact::math::wide::signed(
+                        g2_a2_right - 1.0,
+                        minus_qd_2_right,
+                    ),
+                    m_platform_on_q1_right,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -1896,153 +1945,163 @@ impl FiveBar {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / l_2
-        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        // --- sines and cosines
-        let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[2], joints[3],
-        ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        // --- left
-        let inv_s2_left = 1.0 / s2_left;
-        let fk1_x_left = c2_left * inv_s2_left;
-        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
-            + s1_left * acceleration[1];
-        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
-            + c1_left * acceleration[1] - s1_left * acceleration[0];
-        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
-        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
-        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
-        let rate_1_left = INV_L_1 * t2_left;
-        let t3_left = t2_left * rate_1_left;
-        let k2_left = INV_L_2 * inv_s2_left;
-        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
-        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let t4_left = a_on_f1_left + fk1_x_left * t3_left
-            + rate_2_squared_left * (L_2 * inv_s2_left);
-        let rate_dot_1_left = INV_L_1 * t4_left;
-        let a1_y_left = 9.81 * c1_left;
-        let a1_x_left = 9.81 * s1_left;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let inv_s2_right = 1.0 / s2_right;
-        let fk1_x_right = c2_right * inv_s2_right;
-        let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
-        let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
-        let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
-        let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
-        let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
-            - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
-        ::overact::guard::platform(
-            det_ja,
-            0.9046203494251691,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let l_1_per_det_ja = L_1 / det_ja;
-        let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
-        let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
-        let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
-        let minus_rate_dot_2_left = k2_left
-            * (a_on_f2_left + t1_left * minus_rate_2_left);
-        let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-        let minus_g2_a2_left = k2_left * l_1_per_det_ja;
-        let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
-        let t1_platform = acceleration[1] + 9.81;
-        let m_platform_on_q1_left = vy_by_a1 * t1_platform
-            - minus_vx_by_a1 * acceleration[0];
-        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-        let t5_left = a1_y_left + t4_left;
-        let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
-        let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
-        let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
-            - minus_vy_by_a2 * t1_platform;
-        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-        let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        // --- right
-        let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
-            + s1_right * acceleration[1];
-        let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
-            + c1_right * acceleration[1] - s1_right * acceleration[0];
-        let c1_vx_plus_s1_vy_right = c1_right * twist[0] + s1_right * twist[1];
-        let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
-        let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
-        let rate_1_right = INV_L_1 * t2_right;
-        let t3_right = t2_right * rate_1_right;
-        let k2_right = INV_L_2 * inv_s2_right;
-        let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t4_right = a_on_f1_right + fk1_x_right * t3_right
-            + rate_2_squared_right * (L_2 * inv_s2_right);
-        let rate_dot_1_right = INV_L_1 * t4_right;
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_right = 9.81 * s1_right;
-        let g2_a1_right = l_1_per_det_ja * k2_right;
-        let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
-        let minus_rate_dot_2_right = k2_right
-            * (a_on_f2_right + t1_right * minus_rate_2_right);
-        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
-        let minus_g2_vx_right = c1_right * k2_right;
-        let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
-            - minus_g2_vx_right * vx_by_a2;
-        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
-        let t5_right = a1_y_right + t4_right;
-        let a2_x_right = c2_right * (a1_x_right - t3_right) + s2_right * t5_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        ::core::result::Result::Ok([
-            [
-                rate_dot_1_left, a1_y_left, -a1_x_left, rate_dot_1_left, rate_1_left,
-                ::overact::math::sign(t2_left), 1.0, -minus_zz_2_left_on_q1_left,
-                inv_l_2_m_platform_on_q1_left
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left),
-                L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left,
-                L_1 * t5_left,
-                -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                -minus_zz_2_right_on_q1_left,
-                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
-                -(g2_a1_right * a2_x_right),
-                0.0,
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
-                m_platform_on_q1_left,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
-                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
-                minus_g2_a2_left * a2_x_left, 0.0,
-                ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left), rate_dot_1_right,
-                a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
-                ::overact::math::sign(t2_right), 1.0, -minus_zz_2_right_on_q1_right,
-                inv_l_2_m_platform_on_q1_right
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right),
-                L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
-                L_1 * t5_right,
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
-                m_platform_on_q1_right,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 5.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1 / l_2
+            const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            // --- sines and cosines
+            let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
+            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[0], joints[2], joints[3],
+            ]);
+            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            // --- left
+            let inv_s2_left = 1.0 / s2_left;
+            let fk1_x_left = c2_left * inv_s2_left;
+            let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+                + s1_left * acceleration[1];
+            let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+                + c1_left * acceleration[1] - s1_left * acceleration[0];
+            let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+            let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+            let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+            let rate_1_left = INV_L_1 * t2_left;
+            let t3_left = t2_left * rate_1_left;
+            let k2_left = INV_L_2 * inv_s2_left;
+            let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
+            let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+            let t4_left = a_on_f1_left + fk1_x_left * t3_left
+                + rate_2_squared_left * (L_2 * inv_s2_left);
+            let rate_dot_1_left = INV_L_1 * t4_left;
+            let a1_y_left = 9.81 * c1_left;
+            let a1_x_left = 9.81 * s1_left;
+            let minus_g2_vx_left = c1_left * k2_left;
+            let inv_s2_right = 1.0 / s2_right;
+            let fk1_x_right = c2_right * inv_s2_right;
+            let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
+            let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
+            let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
+            let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
+            let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
+                - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
+            ::overact::guard::platform(
+                det_ja,
+                0.9046203494251691,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let l_1_per_det_ja = L_1 / det_ja;
+            let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
+            let minus_g2_vy_left = s1_left * k2_left;
+            let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
+            let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1
+                - minus_g2_vy_left * vy_by_a1;
+            let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
+            let minus_rate_dot_2_left = k2_left
+                * (a_on_f2_left + t1_left * minus_rate_2_left);
+            let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
+            let minus_g2_a2_left = k2_left * l_1_per_det_ja;
+            let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
+            let t1_platform = acceleration[1] + 9.81;
+            let m_platform_on_q1_left = vy_by_a1 * t1_platform
+                - minus_vx_by_a1 * acceleration[0];
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            let t5_left = a1_y_left + t4_left;
+            let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
+            let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
+            let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * t1_platform;
+            let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+            let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
+            let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+            // --- right
+            let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
+                + s1_right * acceleration[1];
+            let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
+                + c1_right * acceleration[1] - s1_right * acceleration[0];
+            let c1_vx_plus_s1_vy_right = c1_right * twist[0] + s1_right * twist[1];
+            let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
+            let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
+            let rate_1_right = INV_L_1 * t2_right;
+            let t3_right = t2_right * rate_1_right;
+            let k2_right = INV_L_2 * inv_s2_right;
+            let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let t4_right = a_on_f1_right + fk1_x_right * t3_right
+                + rate_2_squared_right * (L_2 * inv_s2_right);
+            let rate_dot_1_right = INV_L_1 * t4_right;
+            let a1_y_right = 9.81 * c1_right;
+            let a1_x_right = 9.81 * s1_right;
+            let g2_a1_right = l_1_per_det_ja * k2_right;
+            let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
+            let minus_rate_dot_2_right = k2_right
+                * (a_on_f2_right + t1_right * minus_rate_2_right);
+            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+            let minus_g2_vy_right = s1_right * k2_right;
+            let minus_g2_vx_right = c1_right * k2_right;
+            let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
+                - minus_g2_vx_right * vx_by_a2;
+            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+            let t5_right = a1_y_right + t4_right;
+            let a2_x_right = c2_right * (a1_x_right - t3_right)
+                + s2_right * t5_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            ::core::result::Result::Ok([
+                [
+                    rate_dot_1_left, a1_y_left, -a1_x_left, rate_dot_1_left, rate_1_left,
+                    ::overact::math::wide::sign(t2_left), 1.0, -minus_zz_2_left_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left
+                        - 0.16
+                            * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left),
+                    L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left,
+                    L_1 * t5_left,
+                    -::overact::math::wide::signed(
+                        g2_a1_left - 1.0,
+                        minus_qd_2_left,
+                    ),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    -minus_zz_2_right_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left
+                        + L_2 * minus_zz_2_right_on_q1_left,
+                    -(g2_a1_right * a2_x_right),
+                    0.0,
+                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
+                    m_platform_on_q1_left,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                    minus_g2_a2_left * a2_x_left, 0.0,
+                    ::overact::math::wide::signed(minus_g2_a2_left, minus_qd_2_left),
+                    rate_dot_1_right, a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
+                    ::overact::math::wide::sign(t2_right), 1.0, -minus_zz_2_right_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right
+                        - 0.16
+                            * (INV_L_1 * t5_right
+                                - 1.5625 * minus_zz_2_right_on_q1_right),
+                    L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
+                    L_1 * t5_right,
+                    -::overact::math::wide::signed(
+                        g2_a2_right - 1.0,
+                        minus_qd_2_right,
+                    ),
+                    m_platform_on_q1_right,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2072,204 +2131,219 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_1² / l_2
-        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vy_left = l1_y_left * k_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-        let vy = inv_det_ja
-            * (g1_vx_right * actuator_velocities[0]
-                + minus_g1_vx_left * actuator_velocities[1]);
-        let minus_vx = inv_det_ja
-            * (g1_vy_right * actuator_velocities[0]
-                + minus_g1_vy_left * actuator_velocities[1]);
-        // --- left
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = inv_det_ja
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-        let dvy = inv_det_ja
-            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        // --- left
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t3_left);
-        let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-        let g2_a2_left = k_left * inv_det_ja;
-        let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
-        let t1_platform = dvy + 9.81;
-        let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform;
-        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-            + L_1 * actuator_accelerations[0];
-        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-        let m_platform_on_q1_right = minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform;
-        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let g2_a1_right = k_right * inv_det_ja;
-        // --- right
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t3_right);
-        let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
-        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
-            - minus_g2_vy_right * vy_by_a2;
-        let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
-        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-            + L_1 * actuator_accelerations[1];
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        ::core::result::Result::Ok([
-            [
-                actuator_accelerations[0], bias_a1_y_left, -bias_a1_x_left,
-                actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -minus_zz_2_left_on_q1_left,
-                inv_l_2_m_platform_on_q1_left
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
-                            - 1.5625 * minus_zz_2_left_on_q1_left),
-                -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left),
-                L_1 * bias_a1_y_plus_l_1_qdd1_left,
-                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                zz_2_right_on_q1_left,
-                inv_l_2_m_platform_on_q1_left - L_2 * zz_2_right_on_q1_left,
-                -(g2_a1_right * a2_x_right),
-                0.0,
-                ::overact::math::signed(g2_a1_right, qd_2_right),
-                m_platform_on_q1_left,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
-                inv_l_2_m_platform_on_q1_right + L_2 * minus_zz_2_left_on_q1_right,
-                -(g2_a2_left * a2_x_left), 0.0, ::overact::math::signed(g2_a2_left, qd_2_left),
-                actuator_accelerations[1], bias_a1_y_right, -bias_a1_x_right,
-                actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, zz_2_right_on_q1_right,
-                inv_l_2_m_platform_on_q1_right
-                    - L_1_SQUARED_PER_L_2
-                        * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
-                            + 1.5625 * zz_2_right_on_q1_right),
-                -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
-                L_1 * bias_a1_y_plus_l_1_qdd1_right,
-                ::overact::math::signed(g2_a2_right - 1.0, qd_2_right),
-                m_platform_on_q1_right,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 5.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let inv_rho_squared_left = 1.0 / rho_squared_left;
+            let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+            let h_squared_left = L_1_SQUARED * inv_rho_squared_left
+                - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let g2_vy_left = l1_y_left * k_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let det_ja = minus_g1_vx_left * g1_vy_right
+                - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let vy_by_a1 = g1_vx_right * inv_det_ja;
+            let g2_vx_left = l1_x_left * k_left;
+            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            let vy = inv_det_ja
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]);
+            let minus_vx = inv_det_ja
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1]);
+            // --- left
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = inv_det_ja
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            let dvy = inv_det_ja
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+            // --- left
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t3_left);
+            let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
+            let g2_a2_left = k_left * inv_det_ja;
+            let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
+            let t1_platform = dvy + 9.81;
+            let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx
+                + vy_by_a1 * t1_platform;
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+            let m_platform_on_q1_right = minus_vx_by_a2 * minus_dvx
+                + vy_by_a2 * t1_platform;
+            let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let g2_a1_right = k_right * inv_det_ja;
+            // --- right
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t3_right);
+            let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
+            let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+                - minus_g2_vy_right * vy_by_a2;
+            let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
+            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+                + L_1 * actuator_accelerations[1];
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            ::core::result::Result::Ok([
+                [
+                    actuator_accelerations[0], bias_a1_y_left, -bias_a1_x_left,
+                    actuator_accelerations[0], actuator_velocities[0],
+                    ::overact::math::wide::sign(actuator_velocities[0]), 1.0,
+                    -minus_zz_2_left_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left
+                        - 0.16
+                            * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
+                                - 1.5625 * minus_zz_2_left_on_q1_left),
+                    -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left),
+                    L_1 * bias_a1_y_plus_l_1_qdd1_left,
+                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    zz_2_right_on_q1_left,
+                    inv_l_2_m_platform_on_q1_left - L_2 * zz_2_right_on_q1_left,
+                    -(g2_a1_right * a2_x_right),
+                    0.0,
+                    ::overact::math::wide::signed(g2_a1_right, qd_2_right),
+                    m_platform_on_q1_left,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right
+                        + L_2 * minus_zz_2_left_on_q1_right,
+                    -(g2_a2_left * a2_x_left),
+                    0.0,
+                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
+                    actuator_accelerations[1],
+                    bias_a1_y_right,
+                    -bias_a1_x_right,
+                    actuator_accelerations[1],
+                    actuator_velocities[1],
+                    ::overact::math::wide::sign(actuator_velocities[1]),
+                    1.0,
+                    zz_2_right_on_q1_right,
+                    inv_l_2_m_platform_on_q1_right
+                        - 0.16
+                            * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
+                                + 1.5625 * zz_2_right_on_q1_right),
+                    -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
+                    L_1 * bias_a1_y_plus_l_1_qdd1_right,
+                    ::overact::math::wide::signed(g2_a2_right - 1.0, qd_2_right),
+                    m_platform_on_q1_right,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2293,141 +2367,156 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_left = 49.05 * l1_x_left;
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_left = 49.05 * l1_y_left;
-        let a1_x_right = 49.05 * l1_y_right;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        // --- left
-        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        // --- right
-        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let t4_left = ::overact::math::signed(k_left, qd_2_left);
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let t4_right = ::overact::math::signed(k_right, minus_qd_2_right);
-        ::core::result::Result::Ok([
-            [
-                acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
-                g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * a1_y_left),
-                g1_vx_right * a1_y_right, minus_g1_vx_left * a1_x_left, -(g1_vx_right * a1_x_right),
-                minus_g1_vx_left * minus_rate_1_left, g1_vx_right * rate_1_right,
-                ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left),
-                ::overact::math::signed(g1_vx_right, rate_1_right), -minus_g1_vx_left, g1_vx_right,
-                g2_vx_left * rate_dot_2_left, minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vx_left * a2_x_left),
-                g1_vx_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
-                d_x_left * t4_left,
-                d_x_right * t4_right,
-            ],
-            [
-                acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * a1_y_left),
-                g1_vy_right * a1_y_right, minus_g1_vy_left * a1_x_left, -(g1_vy_right * a1_x_right),
-                minus_g1_vy_left * minus_rate_1_left, g1_vy_right * rate_1_right,
-                ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left),
-                ::overact::math::signed(g1_vy_right, rate_1_right), -minus_g1_vy_left, g1_vy_right,
-                g2_vy_left * rate_dot_2_left, minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vy_left * a2_x_left),
-                g1_vy_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
-                pose[1] * t4_left,
-                pose[1] * t4_right,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let rate_dot_1_right = k_right
+                * (a_on_f1_right + rate_1_squared_right * t3_right);
+            let a1_y_left = 49.05 * l1_x_left;
+            let a1_y_right = 49.05 * l1_x_right;
+            let a1_x_left = 49.05 * l1_y_left;
+            let a1_x_right = 49.05 * l1_y_right;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            // --- left
+            let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            // --- right
+            let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let t4_right = ::overact::math::wide::signed(k_right, minus_qd_2_right);
+            ::core::result::Result::Ok([
+                [
+                    acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
+                    g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * a1_y_left),
+                    g1_vx_right * a1_y_right, minus_g1_vx_left * a1_x_left,
+                    -(g1_vx_right * a1_x_right), minus_g1_vx_left * minus_rate_1_left,
+                    g1_vx_right * rate_1_right,
+                    ::overact::math::wide::signed(
+                        minus_g1_vx_left,
+                        minus_rate_1_left,
+                    ),
+                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
+                    -minus_g1_vx_left,
+                    g1_vx_right,
+                    g2_vx_left * rate_dot_2_left,
+                    minus_g2_vx_right * minus_rate_dot_2_right,
+                    -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                        + g2_vx_left * a2_x_left),
+                    g1_vx_right * minus_inv_l_2_a_on_f2_right
+                        + minus_g2_vx_right * a2_x_right,
+                    d_x_left * t4_left,
+                    d_x_right * t4_right,
+                ],
+                [
+                    acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
+                    g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * a1_y_left),
+                    g1_vy_right * a1_y_right, minus_g1_vy_left * a1_x_left,
+                    -(g1_vy_right * a1_x_right), minus_g1_vy_left * minus_rate_1_left,
+                    g1_vy_right * rate_1_right,
+                    ::overact::math::wide::signed(
+                        minus_g1_vy_left,
+                        minus_rate_1_left,
+                    ),
+                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
+                    -minus_g1_vy_left,
+                    g1_vy_right,
+                    g2_vy_left * rate_dot_2_left,
+                    minus_g2_vy_right * minus_rate_dot_2_right,
+                    -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                        + g2_vy_left * a2_x_left),
+                    g1_vy_right * minus_inv_l_2_a_on_f2_right
+                        + minus_g2_vy_right * a2_x_right,
+                    pose[1] * t4_left,
+                    pose[1] * t4_right,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2594,150 +2683,174 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vy_right = l2_y_right * k_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_left = 1.0 / det_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let vy = (g1_vx_right * actuator_velocities[0]
-            + minus_g1_vx_left * actuator_velocities[1]) / t1;
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_vx = (g1_vy_right * actuator_velocities[0]
-            + minus_g1_vy_left * actuator_velocities[1]) / t1;
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-            + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right) / t1;
-        let dvy = (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-            + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right) / t1;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t2_left);
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t2_right);
-        // --- left
-        let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-        // --- right
-        let c2_right = t2_right * L_1_PER_HALF_SQUARED;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-        let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let t3_left = ::overact::math::signed(k_left, qd_2_left);
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        let t3_right = ::overact::math::sign(qd_2_right) / det_right;
-        ::core::result::Result::Ok([
-            [
-                -minus_dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
-                g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * bias_a1_y_left),
-                g1_vx_right * bias_a1_y_right, minus_g1_vx_left * bias_a1_x_left,
-                -(g1_vx_right * bias_a1_x_right), -(minus_g1_vx_left * actuator_velocities[0]),
-                g1_vx_right * actuator_velocities[1],
-                -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                ::overact::math::signed(g1_vx_right, actuator_velocities[1]), -minus_g1_vx_left,
-                g1_vx_right, -(g2_vx_left * minus_rate_dot_2_left),
-                -(minus_g2_vx_right * rate_dot_2_right),
-                minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
-                minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
-                d_x_left * t3_left, -(d_x_right * t3_right),
-            ],
-            [
-                dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
-                g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * bias_a1_y_left),
-                g1_vy_right * bias_a1_y_right, minus_g1_vy_left * bias_a1_x_left,
-                -(g1_vy_right * bias_a1_x_right), -(minus_g1_vy_left * actuator_velocities[0]),
-                g1_vy_right * actuator_velocities[1],
-                -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                ::overact::math::signed(g1_vy_right, actuator_velocities[1]), -minus_g1_vy_left,
-                g1_vy_right, -(g2_vy_left * minus_rate_dot_2_left),
-                -(minus_g2_vy_right * rate_dot_2_right),
-                minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
-                minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
-                pose[1] * t3_left, -(pose[1] * t3_right),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_left = 1.0 / det_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let vy = (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]) / t1;
+            let g2_vx_left = l1_x_left * k_left;
+            let minus_vx = (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]) / t1;
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right) / t1;
+            let dvy = (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right) / t1;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t2_left);
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t2_right);
+            // --- left
+            let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
+            let c2_left = t2_left * 20.0;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            // --- right
+            let c2_right = t2_right * 20.0;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let t3_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            ::core::result::Result::Ok([
+                [
+                    -minus_dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
+                    g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * bias_a1_y_left),
+                    g1_vx_right * bias_a1_y_right, minus_g1_vx_left * bias_a1_x_left,
+                    -(g1_vx_right * bias_a1_x_right), -(minus_g1_vx_left * actuator_velocities[0]),
+                    g1_vx_right * actuator_velocities[1],
+                    -::overact::math::wide::signed(
+                        minus_g1_vx_left,
+                        actuator_velocities[0],
+                    ),
+                    ::overact::math::wide::signed(
+                        g1_vx_right,
+                        actuator_velocities[1],
+                    ),
+                    -minus_g1_vx_left,
+                    g1_vx_right,
+                    -(g2_vx_left * minus_rate_dot_2_left),
+                    -(minus_g2_vx_right * rate_dot_2_right),
+                    minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
+                    minus_g2_vx_right * a2_x_right
+                        - g1_vx_right * inv_l_2_a_on_f2_right,
+                    d_x_left * t3_left,
+                    -(d_x_right * t3_right),
+                ],
+                [
+                    dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
+                    g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * bias_a1_y_left),
+                    g1_vy_right * bias_a1_y_right, minus_g1_vy_left * bias_a1_x_left,
+                    -(g1_vy_right * bias_a1_x_right), -(minus_g1_vy_left * actuator_velocities[0]),
+                    g1_vy_right * actuator_velocities[1],
+                    -::overact::math::wide::signed(
+                        minus_g1_vy_left,
+                        actuator_velocities[0],
+                    ),
+                    ::overact::math::wide::signed(
+                        g1_vy_right,
+                        actuator_velocities[1],
+                    ),
+                    -minus_g1_vy_left,
+                    g1_vy_right,
+                    -(g2_vy_left * minus_rate_dot_2_left),
+                    -(minus_g2_vy_right * rate_dot_2_right),
+                    minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
+                    minus_g2_vy_right * a2_x_right
+                        - g1_vy_right * inv_l_2_a_on_f2_right,
+                    pose[1] * t3_left,
+                    -(pose[1] * t3_right),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2761,143 +2874,151 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
-        let t1_platform = acceleration[1] + 9.81;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_left = 49.05 * l1_x_left;
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_left = 49.05 * l1_y_left;
-        let a1_x_right = 49.05 * l1_y_right;
-        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let g2_a2_left = k_left * inv_det_ja;
-        let g2_a1_right = k_right * inv_det_ja;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
-            - minus_g2_vy_right * vy_by_a2;
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        ::core::result::Result::Ok([
-            [
-                vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0], -minus_rate_dot_1_left,
-                0.0, a1_y_left, 0.0, -a1_x_left, 0.0, -minus_rate_1_left, 0.0,
-                -::overact::math::sign(minus_rate_1_left), 0.0, 1.0, 0.0,
-                g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
-                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
-                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
-            ],
-            [
-                vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0], 0.0, rate_dot_1_right,
-                0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
-                ::overact::math::sign(rate_1_right), 0.0, 1.0, g2_a2_left * rate_dot_2_left,
-                -(g2_a2_right * minus_rate_dot_2_right), -(g2_a2_left * a2_x_left),
-                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                ::overact::math::signed(g2_a2_left, qd_2_left),
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let inv_rho_squared_left = 1.0 / rho_squared_left;
+            let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+            let h_squared_left = L_1_SQUARED * inv_rho_squared_left
+                - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let det_ja = minus_g1_vx_left * g1_vy_right
+                - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let vy_by_a1 = g1_vx_right * inv_det_ja;
+            let t1_platform = acceleration[1] + 9.81;
+            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let rate_dot_1_right = k_right
+                * (a_on_f1_right + rate_1_squared_right * t3_right);
+            let a1_y_left = 49.05 * l1_x_left;
+            let a1_y_right = 49.05 * l1_x_right;
+            let a1_x_left = 49.05 * l1_y_left;
+            let a1_x_right = 49.05 * l1_y_right;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            let g2_a2_left = k_left * inv_det_ja;
+            let g2_a1_right = k_right * inv_det_ja;
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+                - minus_g2_vy_right * vy_by_a2;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            ::core::result::Result::Ok([
+                [
+                    vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0],
+                    -minus_rate_dot_1_left, 0.0, a1_y_left, 0.0, -a1_x_left, 0.0,
+                    -minus_rate_1_left, 0.0, -::overact::math::wide::sign(minus_rate_1_left), 0.0,
+                    1.0, 0.0, g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
+                    INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                    -(g2_a1_right * a2_x_right),
+                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
+                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
+                ],
+                [
+                    vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0], 0.0,
+                    rate_dot_1_right, 0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
+                    ::overact::math::wide::sign(rate_1_right), 0.0, 1.0,
+                    g2_a2_left * rate_dot_2_left, -(g2_a2_right * minus_rate_dot_2_right),
+                    -(g2_a2_left * a2_x_left),
+                    INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
+                    -::overact::math::wide::signed(
+                        g2_a2_right - 1.0,
+                        minus_qd_2_right,
+                    ),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3070,160 +3191,168 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vy_right = l2_y_right * k_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            det_ja,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let g2_vy_left = l1_y_left * k_left;
-        let vy = inv_det_ja
-            * (g1_vx_right * actuator_velocities[0]
-                + minus_g1_vx_left * actuator_velocities[1]);
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_vx = inv_det_ja
-            * (g1_vy_right * actuator_velocities[0]
-                + minus_g1_vy_left * actuator_velocities[1]);
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = inv_det_ja
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
-        let dvy = inv_det_ja
-            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        let t1_platform = dvy + 9.81;
-        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t3_left);
-        let g2_a2_left = k_left * inv_det_ja;
-        let g2_a1_right = k_right * inv_det_ja;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t3_right);
-        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
-            - minus_g2_vy_right * vy_by_a2;
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        ::core::result::Result::Ok([
-            [
-                minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform, actuator_accelerations[0], 0.0,
-                bias_a1_y_left, 0.0, -bias_a1_x_left, 0.0, actuator_velocities[0], 0.0,
-                ::overact::math::sign(actuator_velocities[0]), 0.0, 1.0, 0.0,
-                -(g2_a1_left * minus_rate_dot_2_left), g2_a1_right * rate_dot_2_right,
-                -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left), -(g2_a1_right * a2_x_right),
-                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
-                ::overact::math::signed(g2_a1_right, qd_2_right),
-            ],
-            [
-                minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform, 0.0, actuator_accelerations[1],
-                0.0, bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0, actuator_velocities[1], 0.0,
-                ::overact::math::sign(actuator_velocities[1]), 0.0, 1.0,
-                -(g2_a2_left * minus_rate_dot_2_left), g2_a2_right * rate_dot_2_right,
-                -(g2_a2_left * a2_x_left), -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
-                ::overact::math::signed(g2_a2_left, qd_2_left),
-                ::overact::math::signed(g2_a2_right - 1.0, qd_2_right),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let inv_rho_squared_left = 1.0 / rho_squared_left;
+            let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+            let h_squared_left = L_1_SQUARED * inv_rho_squared_left
+                - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let det_ja = minus_g1_vx_left * g1_vy_right
+                - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            let g2_vy_left = l1_y_left * k_left;
+            let vy = inv_det_ja
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]);
+            let g2_vx_left = l1_x_left * k_left;
+            let minus_vx = inv_det_ja
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1]);
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = inv_det_ja
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            let vy_by_a1 = g1_vx_right * inv_det_ja;
+            let dvy = inv_det_ja
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+            let t1_platform = dvy + 9.81;
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t3_left);
+            let g2_a2_left = k_left * inv_det_ja;
+            let g2_a1_right = k_right * inv_det_ja;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t3_right);
+            let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+                - minus_g2_vy_right * vy_by_a2;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            ::core::result::Result::Ok([
+                [
+                    minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform, actuator_accelerations[0],
+                    0.0, bias_a1_y_left, 0.0, -bias_a1_x_left, 0.0, actuator_velocities[0], 0.0,
+                    ::overact::math::wide::sign(actuator_velocities[0]), 0.0, 1.0, 0.0,
+                    -(g2_a1_left * minus_rate_dot_2_left), g2_a1_right * rate_dot_2_right,
+                    -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left), -(g2_a1_right * a2_x_right),
+                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
+                    ::overact::math::wide::signed(g2_a1_right, qd_2_right),
+                ],
+                [
+                    minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform, 0.0,
+                    actuator_accelerations[1], 0.0, bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0,
+                    actuator_velocities[1], 0.0,
+                    ::overact::math::wide::sign(actuator_velocities[1]), 0.0, 1.0,
+                    -(g2_a2_left * minus_rate_dot_2_left), g2_a2_right * rate_dot_2_right,
+                    -(g2_a2_left * a2_x_left),
+                    -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
+                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
+                    ::overact::math::wide::signed(g2_a2_right - 1.0, qd_2_right),
+                ],
+            ])
+        })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -3333,153 +3462,167 @@ impl FiveBar {
                 ("parameters", parameters),
             ],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t2_left);
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let a1_x_left = 49.05 * l1_y_left;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let t3_left = parameters[6]
-            + a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - parameters[2] * a1_x_left + INV_L_2 * (parameters[9] * minus_a_on_f2_left)
-            - parameters[4] * minus_rate_1_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t3_left
-            - ::overact::math::signed(parameters[5], minus_rate_1_left)
-            - minus_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                    + parameters[3]) - tau_2_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        // --- left
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        let moment2_z_left = rate_dot_2_left
-            * (parameters[7] - inv_l_2_mx_2_left * L_2_SQUARED)
-            - parameters[9] * a2_x_left;
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        // --- right
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
-        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a1_y_right = 49.05 * l1_x_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t2_right);
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let minus_moment2_z_right = minus_rate_dot_2_right
-            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-            + parameters[21] * a2_x_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let t1_platform = parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
-        let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = (g2_vy_left * force_on_u2_left
-            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
-        let force_x_platform = acceleration[0] * t1_platform;
-        let t3 = (g2_vx_left * force_on_u2_left
-            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
-        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let t3_right = parameters[16] * rate_1_right
-            + a1_y_right * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-            - parameters[14] * a1_x_right
-            + INV_L_2 * (minus_a_on_f2_right * parameters[21]);
-        let force_on_u1_right = minus_tau_2_right + parameters[18]
-            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right
-            + rate_dot_1_right
-                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                    + parameters[15]);
-        ::core::result::Result::Ok([
-            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
-            force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t2_left);
+            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
+                - inv_l_2_mx_2_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let t3_left = parameters[6]
+                + a1_y_left
+                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+                - parameters[2] * a1_x_left
+                + INV_L_2 * (parameters[9] * minus_a_on_f2_left)
+                - parameters[4] * minus_rate_1_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                parameters[11],
+                qd_2_left,
+            );
+            let force_on_u1_left = t3_left
+                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - minus_rate_dot_1_left
+                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                        + parameters[3]) - tau_2_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            // --- left
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+            let c2_left = t2_left * 20.0;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            let moment2_z_left = rate_dot_2_left
+                * (parameters[7] - inv_l_2_mx_2_left * L_2_SQUARED)
+                - parameters[9] * a2_x_left;
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            // --- right
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+            let c2_right = 20.0 * t2_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            let s2_right = 20.0 * det_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let rate_dot_1_right = k_right
+                * (a_on_f1_right + rate_1_squared_right * t2_right);
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+            let minus_moment2_z_right = minus_rate_dot_2_right
+                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+                + parameters[21] * a2_x_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                parameters[23],
+                minus_qd_2_right,
+            );
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let t1_platform = parameters[24] + inv_l_2_mx_2_left
+                + inv_l_2_mx_2_right;
+            let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = (g2_vy_left * force_on_u2_left
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
+                / t1;
+            let force_x_platform = acceleration[0] * t1_platform;
+            let t3 = (g2_vx_left * force_on_u2_left
+                + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform)
+                / t1;
+            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
+                - inv_l_2_mx_2_right;
+            let t3_right = parameters[16] * rate_1_right
+                + a1_y_right
+                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+                - parameters[14] * a1_x_right
+                + INV_L_2 * (minus_a_on_f2_right * parameters[21]);
+            let force_on_u1_right = minus_tau_2_right + parameters[18]
+                + ::overact::math::wide::signed(parameters[17], rate_1_right)
+                + t3_right
+                + rate_dot_1_right
+                    * (parameters[12]
+                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                        + parameters[15]);
+            ::core::result::Result::Ok([
+                force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+                force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -3509,138 +3652,146 @@ impl FiveBar {
                 ("acceleration", acceleration), ("parameters", parameters),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        // --- sines and cosines
-        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3],
-        ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        // --- left
-        let c12_left = c1_left * c2_left - s1_left * s2_left;
-        let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let k1_left = INV_L_1 / s2_left;
-        let g1_vx_left = c12_left * k1_left;
-        let g1_vy_left = s12_left * k1_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let k2_left = INV_L_2 / s2_left;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let minus_rate_2_left = minus_g2_vx_left * twist[0]
-            + minus_g2_vy_left * twist[1];
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        let minus_tau_2_left = ::overact::math::signed(parameters[11], minus_qd_2_left);
-        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
-        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
-            + l_2_rate_2_squared_left;
-        let rate_1_squared_left = rate_1_left * rate_1_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
-        let rate_dot_1_left = k1_left
-            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
-        let a1_y_left = 9.81 * c1_left;
-        let a1_x_left = 9.81 * s1_left;
-        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
-            + l_1_rate_1_squared_left;
-        let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        let force2_x_left = parameters[9] * minus_rate_dot_2_left
-            - parameters[8] * rate_2_squared_left;
-        let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
-            + parameters[9] * rate_2_squared_left;
-        let t1_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
-            - parameters[2] * a1_x_left
-            + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
-        let t2_left = rate_dot_1_left
-            * (parameters[0] + L_1_SQUARED * parameters[10] + parameters[3])
-            + ::overact::math::signed(parameters[5], rate_1_left) + t1_left
-            + parameters[4] * rate_1_left + parameters[6];
-        let force_on_u1_left = minus_tau_2_left + t2_left;
-        // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let k1_right = INV_L_1 / s2_right;
-        let g1_vx_right = c12_right * k1_right;
-        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
-        // --- left
-        let a2_y_left = c2_left * (a1_y_left + L_1 * rate_dot_1_left)
-            - s2_left * (a1_x_left - l_1_rate_1_squared_left);
-        let a2_x_left = a_on_f1_left + s12_left * 9.81;
-        let moment2_z_left = parameters[8] * a2_y_left - parameters[9] * a2_x_left
-            - parameters[7] * minus_rate_dot_2_left;
-        let force_on_u2_left = moment2_z_left - minus_tau_2_left;
-        // --- right
-        let k2_right = INV_L_2 / s2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
-        let a1_y_right = 9.81 * c1_right;
-        let minus_g2_vx_right = c1_right * k2_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let g1_vy_right = s12_right * k1_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-        let a1_x_right = 9.81 * s1_right;
-        let a2_y_right = c2_right * (a1_y_right + L_1 * rate_dot_1_right)
-            - s2_right * (a1_x_right - l_1_rate_1_squared_right);
-        let a2_x_right = a_on_f1_right + 9.81 * s12_right;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
-        let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
-        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
-            - parameters[19] * minus_rate_dot_2_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629227,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = (force_y_platform
-            - (minus_g2_vy_left * force_on_u2_left
-                + minus_g2_vy_right * force_on_u2_right)) / t1;
-        let force_x_platform = acceleration[0] * parameters[24];
-        let t3 = (force_x_platform
-            - (minus_g2_vx_left * force_on_u2_left
-                + minus_g2_vx_right * force_on_u2_right)) / t1;
-        let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right;
-        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
-            + parameters[21] * rate_2_squared_right;
-        let t1_right = a1_y_right * (parameters[13] + L_1 * parameters[22])
-            - parameters[14] * a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
-        let t2_right = parameters[18] + t1_right + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right)
-            + rate_dot_1_right
-                * (parameters[12] + L_1_SQUARED * parameters[22] + parameters[15]);
-        let force_on_u1_right = minus_tau_2_right + t2_right;
-        ::core::result::Result::Ok([
-            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
-            force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 5.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            // --- sines and cosines
+            let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3],
+            ]);
+            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            // --- left
+            let c12_left = c1_left * c2_left - s1_left * s2_left;
+            let s12_left = s1_left * c2_left + c1_left * s2_left;
+            let k1_left = INV_L_1 / s2_left;
+            let g1_vx_left = c12_left * k1_left;
+            let g1_vy_left = s12_left * k1_left;
+            let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
+            let k2_left = INV_L_2 / s2_left;
+            let minus_g2_vx_left = c1_left * k2_left;
+            let minus_g2_vy_left = s1_left * k2_left;
+            let minus_rate_2_left = minus_g2_vx_left * twist[0]
+                + minus_g2_vy_left * twist[1];
+            let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+            let minus_tau_2_left = ::overact::math::wide::signed(
+                parameters[11],
+                minus_qd_2_left,
+            );
+            let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+            let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+            let a_on_f1_left = c12_left * acceleration[0]
+                + s12_left * acceleration[1] + l_2_rate_2_squared_left;
+            let rate_1_squared_left = rate_1_left * rate_1_left;
+            let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+            let rate_dot_1_left = k1_left
+                * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+            let a1_y_left = 9.81 * c1_left;
+            let a1_x_left = 9.81 * s1_left;
+            let minus_a_on_f2_left = c1_left * acceleration[0]
+                + s1_left * acceleration[1] + l_1_rate_1_squared_left;
+            let minus_rate_dot_2_left = k2_left
+                * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+            let force2_x_left = parameters[9] * minus_rate_dot_2_left
+                - parameters[8] * rate_2_squared_left;
+            let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
+                + parameters[9] * rate_2_squared_left;
+            let t1_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
+                - parameters[2] * a1_x_left
+                + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
+            let t2_left = rate_dot_1_left
+                * (parameters[0] + L_1_SQUARED * parameters[10] + parameters[3])
+                + ::overact::math::wide::signed(parameters[5], rate_1_left) + t1_left
+                + parameters[4] * rate_1_left + parameters[6];
+            let force_on_u1_left = minus_tau_2_left + t2_left;
+            // --- right
+            let c12_right = c1_right * c2_right - s1_right * s2_right;
+            let s12_right = s1_right * c2_right + c1_right * s2_right;
+            let k1_right = INV_L_1 / s2_right;
+            let g1_vx_right = c12_right * k1_right;
+            let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+            // --- left
+            let a2_y_left = c2_left * (a1_y_left + L_1 * rate_dot_1_left)
+                - s2_left * (a1_x_left - l_1_rate_1_squared_left);
+            let a2_x_left = a_on_f1_left + s12_left * 9.81;
+            let moment2_z_left = parameters[8] * a2_y_left
+                - parameters[9] * a2_x_left - parameters[7] * minus_rate_dot_2_left;
+            let force_on_u2_left = moment2_z_left - minus_tau_2_left;
+            // --- right
+            let k2_right = INV_L_2 / s2_right;
+            let minus_g2_vy_right = s1_right * k2_right;
+            let a1_y_right = 9.81 * c1_right;
+            let minus_g2_vx_right = c1_right * k2_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+            let a_on_f1_right = c12_right * acceleration[0]
+                + s12_right * acceleration[1] + l_2_rate_2_squared_right;
+            let g1_vy_right = s12_right * k1_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+            let rate_dot_1_right = k1_right
+                * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+            let a1_x_right = 9.81 * s1_right;
+            let a2_y_right = c2_right * (a1_y_right + L_1 * rate_dot_1_right)
+                - s2_right * (a1_x_right - l_1_rate_1_squared_right);
+            let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+            let minus_a_on_f2_right = c1_right * acceleration[0]
+                + s1_right * acceleration[1] + l_1_rate_1_squared_right;
+            let minus_rate_dot_2_right = k2_right
+                * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+            let moment2_z_right = parameters[20] * a2_y_right
+                - parameters[21] * a2_x_right
+                - parameters[19] * minus_rate_dot_2_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                parameters[23],
+                minus_qd_2_right,
+            );
+            let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+            let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629227,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = (force_y_platform
+                - (minus_g2_vy_left * force_on_u2_left
+                    + minus_g2_vy_right * force_on_u2_right)) / t1;
+            let force_x_platform = acceleration[0] * parameters[24];
+            let t3 = (force_x_platform
+                - (minus_g2_vx_left * force_on_u2_left
+                    + minus_g2_vx_right * force_on_u2_right)) / t1;
+            let force2_x_right = parameters[21] * minus_rate_dot_2_right
+                - parameters[20] * rate_2_squared_right;
+            let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right;
+            let t1_right = a1_y_right * (parameters[13] + L_1 * parameters[22])
+                - parameters[14] * a1_x_right
+                + L_1
+                    * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+            let t2_right = parameters[18] + t1_right + parameters[16] * rate_1_right
+                + ::overact::math::wide::signed(parameters[17], rate_1_right)
+                + rate_dot_1_right
+                    * (parameters[12] + L_1_SQUARED * parameters[22]
+                        + parameters[15]);
+            let force_on_u1_right = minus_tau_2_right + t2_right;
+            ::core::result::Result::Ok([
+                force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+                force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -3672,168 +3823,189 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = 1.0 / t1;
-        let g2_vy_left = l1_y_left * k_left;
-        let vy = t2
-            * (g1_vx_right * actuator_velocities[0]
-                + minus_g1_vx_left * actuator_velocities[1]);
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_vx = t2
-            * (g1_vy_right * actuator_velocities[0]
-                + minus_g1_vy_left * actuator_velocities[1]);
-        // --- left
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = t2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-        let dvy = t2
-            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        // --- left
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let t3_left = bias_a1_y_left
-            * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - bias_a1_x_left * parameters[2] - INV_L_2 * (parameters[9] * a_on_f2_left)
-            + actuator_velocities[0] * parameters[4];
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = parameters[6]
-            + ::overact::math::signed(parameters[5], actuator_velocities[0]) + t3_left
-            + actuator_accelerations[0]
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                    + parameters[3]) - tau_2_left;
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t2_left);
-        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-        let minus_moment2_z_left = minus_rate_dot_2_left
-            * (parameters[7] - L_2 * parameters[8]) + parameters[9] * a2_x_left;
-        let force_on_u2_left = tau_2_left - minus_moment2_z_left;
-        // --- right
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t2_right);
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-        let moment2_z_right = rate_dot_2_right * (parameters[19] - L_2 * parameters[20])
-            - parameters[21] * a2_x_right;
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        let tau_2_right = ::overact::math::signed(parameters[23], qd_2_right);
-        let force_on_u2_right = moment2_z_right + tau_2_right;
-        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-        let t1_platform = parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
-        let force_y_platform = (dvy + 9.81) * t1_platform;
-        let t3 = t2
-            * (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
-                + force_y_platform);
-        let minus_force_x_platform = minus_dvx * t1_platform;
-        let t4 = t2
-            * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
-                - minus_force_x_platform);
-        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let t3_right = actuator_velocities[1] * parameters[16]
-            + bias_a1_y_right
-                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-            - bias_a1_x_right * parameters[14]
-            - INV_L_2 * (a_on_f2_right * parameters[21]);
-        let force_on_u1_right = actuator_accelerations[1]
-            * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                + parameters[15])
-            + ::overact::math::signed(parameters[17], actuator_velocities[1]) + t3_right
-            + parameters[18] - tau_2_right;
-        ::core::result::Result::Ok([
-            force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
-            force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2
+            const L_2: ::core::primitive::f64 = 0.25;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
+                - inv_l_2_mx_2_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = 1.0 / t1;
+            let g2_vy_left = l1_y_left * k_left;
+            let vy = t2
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]);
+            let g2_vx_left = l1_x_left * k_left;
+            let minus_vx = t2
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1]);
+            // --- left
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = t2
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            let dvy = t2
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+            // --- left
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let t3_left = bias_a1_y_left
+                * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+                - bias_a1_x_left * parameters[2]
+                - INV_L_2 * (parameters[9] * a_on_f2_left)
+                + actuator_velocities[0] * parameters[4];
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let tau_2_left = ::overact::math::wide::signed(
+                parameters[11],
+                qd_2_left,
+            );
+            let force_on_u1_left = parameters[6]
+                + ::overact::math::wide::signed(
+                    parameters[5],
+                    actuator_velocities[0],
+                ) + t3_left
+                + actuator_accelerations[0]
+                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                        + parameters[3]) - tau_2_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t2_left);
+            let c2_left = 20.0 * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            let minus_moment2_z_left = minus_rate_dot_2_left
+                * (parameters[7] - L_2 * parameters[8]) + parameters[9] * a2_x_left;
+            let force_on_u2_left = tau_2_left - minus_moment2_z_left;
+            // --- right
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t2_right);
+            let c2_right = 20.0 * t2_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let s2_right = 20.0 * det_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            let moment2_z_right = rate_dot_2_right
+                * (parameters[19] - L_2 * parameters[20])
+                - parameters[21] * a2_x_right;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let tau_2_right = ::overact::math::wide::signed(
+                parameters[23],
+                qd_2_right,
+            );
+            let force_on_u2_right = moment2_z_right + tau_2_right;
+            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+            let t1_platform = parameters[24] + inv_l_2_mx_2_left
+                + inv_l_2_mx_2_right;
+            let force_y_platform = (dvy + 9.81) * t1_platform;
+            let t3 = t2
+                * (g2_vy_left * force_on_u2_left
+                    - minus_g2_vy_right * force_on_u2_right + force_y_platform);
+            let minus_force_x_platform = minus_dvx * t1_platform;
+            let t4 = t2
+                * (g2_vx_left * force_on_u2_left
+                    - minus_g2_vx_right * force_on_u2_right
+                    - minus_force_x_platform);
+            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
+                - inv_l_2_mx_2_right;
+            let t3_right = actuator_velocities[1] * parameters[16]
+                + bias_a1_y_right
+                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+                - bias_a1_x_right * parameters[14]
+                - INV_L_2 * (a_on_f2_right * parameters[21]);
+            let force_on_u1_right = actuator_accelerations[1]
+                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                    + parameters[15])
+                + ::overact::math::wide::signed(
+                    parameters[17],
+                    actuator_velocities[1],
+                ) + t3_right + parameters[18] - tau_2_right;
+            ::core::result::Result::Ok([
+                force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
+                force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -3861,142 +4033,152 @@ impl FiveBar {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t2_left);
-        let a1_x_left = 49.05 * l1_y_left;
-        let moment1_z_left = base_parameters[3] * a1_y_left
-            - base_parameters[1] * minus_rate_dot_1_left
-            - base_parameters[5] * a1_x_left;
-        let tau_1_left = base_parameters[11]
-            - (base_parameters[7] * minus_rate_1_left
-                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + minus_a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g1_vx_right = l2_x_right / det_right;
-        // --- left
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * rate_dot_2_left
-            - base_parameters[15] * a2_x_left;
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        // --- right
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right / det_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right / det_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_g2_vx_right = l1_x_right / det_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let minus_rate_dot_2_right = (minus_a_on_f2_right
-            + rate_2_squared_right * t2_right) / det_right;
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a1_y_right = 49.05 * l1_x_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_dot_1_right = (a_on_f1_right + rate_1_squared_right * t2_right)
-            / det_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-            + base_parameters[16] * a2_x_right;
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
-            minus_qd_2_right,
-        );
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = (g2_vy_left * force_on_u2_left
-            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
-        let force_x_platform = acceleration[0] * base_parameters[0];
-        let t3 = (g2_vx_left * force_on_u2_left
-            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
-        let moment1_z_right = base_parameters[2] * rate_dot_1_right
-            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + minus_a_on_f2_right * (INV_L_2 * base_parameters[16]) + minus_tau_2_right;
-        ::core::result::Result::Ok([
-            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
-            force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t2_left);
+            let a1_x_left = 49.05 * l1_y_left;
+            let moment1_z_left = base_parameters[3] * a1_y_left
+                - base_parameters[1] * minus_rate_dot_1_left
+                - base_parameters[5] * a1_x_left;
+            let tau_1_left = base_parameters[11]
+                - (base_parameters[7] * minus_rate_1_left
+                    + ::overact::math::wide::signed(
+                        base_parameters[9],
+                        minus_rate_1_left,
+                    ));
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                base_parameters[17],
+                qd_2_left,
+            );
+            let force_on_u1_left = moment1_z_left + tau_1_left
+                + minus_a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let g1_vx_right = l2_x_right / det_right;
+            // --- left
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+            let c2_left = t2_left * 20.0;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            let moment2_z_left = base_parameters[13] * rate_dot_2_left
+                - base_parameters[15] * a2_x_left;
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            // --- right
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let minus_g2_vy_right = l1_y_right / det_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right / det_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let minus_a_on_f2_right = l1_x_right * acceleration[0]
+                + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+            let minus_g2_vx_right = l1_x_right / det_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let minus_rate_dot_2_right = (minus_a_on_f2_right
+                + rate_2_squared_right * t2_right) / det_right;
+            let c2_right = 20.0 * t2_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            let s2_right = 20.0 * det_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            let a_on_f1_right = l2_x_right * acceleration[0]
+                + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
+            let rate_dot_1_right = (a_on_f1_right + rate_1_squared_right * t2_right)
+                / det_right;
+            let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+            let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+                + base_parameters[16] * a2_x_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                base_parameters[18],
+                minus_qd_2_right,
+            );
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = (g2_vy_left * force_on_u2_left
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
+                / t1;
+            let force_x_platform = acceleration[0] * base_parameters[0];
+            let t3 = (g2_vx_left * force_on_u2_left
+                + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform)
+                / t1;
+            let moment1_z_right = base_parameters[2] * rate_dot_1_right
+                + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right;
+            let tau_1_right = base_parameters[8] * rate_1_right
+                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
+                + base_parameters[12];
+            let force_on_u1_right = moment1_z_right + tau_1_right
+                + minus_a_on_f2_right * (INV_L_2 * base_parameters[16])
+                + minus_tau_2_right;
+            ::core::result::Result::Ok([
+                force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+                force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -4175,161 +4357,177 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let moment1_z_left = actuator_accelerations[0] * base_parameters[1]
-            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5];
-        let tau_1_left = actuator_velocities[0] * base_parameters[7]
-            + ::overact::math::signed(base_parameters[9], actuator_velocities[0])
-            + base_parameters[11];
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = 1.0 / t1;
-        let g2_vy_left = l1_y_left * k_left;
-        let vy = t2
-            * (g1_vx_right * actuator_velocities[0]
-                + minus_g1_vx_left * actuator_velocities[1]);
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_vx = t2
-            * (g1_vy_right * actuator_velocities[0]
-                + minus_g1_vy_left * actuator_velocities[1]);
-        // --- left
-        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
-            + minus_bias_rate_dot_1_left;
-        // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-        let rate_2_squared_right = rate_2_right * rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        let minus_dvx = t2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-        let dvy = t2
-            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
-                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
-            - minus_bias_a_on_f2_left;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            - a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
-        // --- left
-        let minus_rate_dot_2_left = k_left
-            * (a_on_f2_left - rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
-            + base_parameters[15] * a2_x_left;
-        let force_on_u2_left = tau_2_left - minus_moment2_z_left;
-        // --- right
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-            - minus_bias_a_on_f2_right;
-        let rate_dot_2_right = k_right
-            * (a_on_f2_right - rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-        let moment2_z_right = base_parameters[14] * rate_dot_2_right
-            - base_parameters[16] * a2_x_right;
-        let qd_2_right = rate_2_right - actuator_velocities[1];
-        let tau_2_right = ::overact::math::signed(base_parameters[18], qd_2_right);
-        let force_on_u2_right = moment2_z_right + tau_2_right;
-        let force_y_platform = base_parameters[0] * (dvy + 9.81);
-        let t3 = t2
-            * (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
-                + force_y_platform);
-        let minus_force_x_platform = minus_dvx * base_parameters[0];
-        let t4 = t2
-            * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
-                - minus_force_x_platform);
-        let moment1_z_right = actuator_accelerations[1] * base_parameters[2]
-            + bias_a1_y_right * base_parameters[4]
-            - bias_a1_x_right * base_parameters[6];
-        let tau_1_right = actuator_velocities[1] * base_parameters[8]
-            + ::overact::math::signed(base_parameters[10], actuator_velocities[1])
-            + base_parameters[12];
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            - a_on_f2_right * (INV_L_2 * base_parameters[16]) - tau_2_right;
-        ::core::result::Result::Ok([
-            force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
-            force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let moment1_z_left = actuator_accelerations[0] * base_parameters[1]
+                + bias_a1_y_left * base_parameters[3]
+                - bias_a1_x_left * base_parameters[5];
+            let tau_1_left = actuator_velocities[0] * base_parameters[7]
+                + ::overact::math::wide::signed(
+                    base_parameters[9],
+                    actuator_velocities[0],
+                ) + base_parameters[11];
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = 1.0 / t1;
+            let g2_vy_left = l1_y_left * k_left;
+            let vy = t2
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]);
+            let g2_vx_left = l1_x_left * k_left;
+            let minus_vx = t2
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1]);
+            // --- left
+            let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+                + minus_bias_rate_dot_1_left;
+            // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let rate_2_squared_right = rate_2_right * rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+                - bias_rate_dot_1_right;
+            let minus_dvx = t2
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            let dvy = t2
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+                - minus_bias_a_on_f2_left;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let tau_2_left = ::overact::math::wide::signed(
+                base_parameters[17],
+                qd_2_left,
+            );
+            let force_on_u1_left = moment1_z_left + tau_1_left
+                - a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
+            // --- left
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t3_left);
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
+                + base_parameters[15] * a2_x_left;
+            let force_on_u2_left = tau_2_left - minus_moment2_z_left;
+            // --- right
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t3_right);
+            let c2_right = INV_HALF * t2_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let s2_right = 20.0 * det_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            let moment2_z_right = base_parameters[14] * rate_dot_2_right
+                - base_parameters[16] * a2_x_right;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let tau_2_right = ::overact::math::wide::signed(
+                base_parameters[18],
+                qd_2_right,
+            );
+            let force_on_u2_right = moment2_z_right + tau_2_right;
+            let force_y_platform = base_parameters[0] * (dvy + 9.81);
+            let t3 = t2
+                * (g2_vy_left * force_on_u2_left
+                    - minus_g2_vy_right * force_on_u2_right + force_y_platform);
+            let minus_force_x_platform = minus_dvx * base_parameters[0];
+            let t4 = t2
+                * (g2_vx_left * force_on_u2_left
+                    - minus_g2_vx_right * force_on_u2_right
+                    - minus_force_x_platform);
+            let moment1_z_right = actuator_accelerations[1] * base_parameters[2]
+                + bias_a1_y_right * base_parameters[4]
+                - bias_a1_x_right * base_parameters[6];
+            let tau_1_right = actuator_velocities[1] * base_parameters[8]
+                + ::overact::math::wide::signed(
+                    base_parameters[10],
+                    actuator_velocities[1],
+                ) + base_parameters[12];
+            let force_on_u1_right = moment1_z_right + tau_1_right
+                - a_on_f2_right * (INV_L_2 * base_parameters[16]) - tau_2_right;
+            ::core::result::Result::Ok([
+                force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
+                force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
+            ])
+        })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -4354,8 +4552,6 @@ impl FiveBar {
         const INV_HALF: ::core::primitive::f64 = 10.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         // --- left
@@ -4375,7 +4571,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left / det_left;
         let c2_left = INV_HALF * (rho_squared_left - 0.1025);
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let minus_s2_left = 20.0 * det_left;
         let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
         let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
@@ -4397,7 +4593,7 @@ impl FiveBar {
             + parameters[15];
         let minus_g2_vx_right = l1_x_right / det_right;
         let c2_right = INV_HALF * (rho_squared_right - 0.1025);
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let s2_right = 20.0 * det_right;
         let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
         let masses_right_1_2 = L_1 * force1_y_by_2_right;
         let t2_right = g2_vx_left
@@ -4459,8 +4655,6 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         // --- left
@@ -4480,7 +4674,7 @@ impl FiveBar {
         let g2_vx_left = l1_x_left * k_left;
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let minus_s2_left = 20.0 * det_left;
         let force1_y_by_2_left = minus_s2_left * base_parameters[15];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
         // --- right
@@ -4497,7 +4691,7 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let g1_vx_right = l2_x_right / det_right;
         let minus_g2_vx_right = l1_x_right / det_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let s2_right = 20.0 * det_right;
         let minus_force1_y_by_2_right = s2_right * base_parameters[16];
         let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
         let t2_right = g2_vx_left
@@ -4561,142 +4755,154 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("parameters", parameters)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = bias_rate_dot_2_left
-            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
-            - parameters[9] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let t3_left = parameters[6]
-            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - parameters[2] * bias_a1_x_left
-            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
-            - parameters[4] * minus_rate_1_left;
-        let force_on_u1_left = t3_left
-            - ::overact::math::signed(parameters[5], minus_rate_1_left)
-            - minus_bias_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                    + parameters[3]) - tau_2_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let t3_right = parameters[16] * rate_1_right
-            + bias_a1_y_right
-                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-            - parameters[14] * bias_a1_x_right
-            + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
-        let force_on_u1_right = minus_tau_2_right
-            + bias_rate_dot_1_right
-                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                    + parameters[15]) + parameters[18]
-            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-        let minus_moment2_z_right = minus_bias_rate_dot_2_right
-            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-            + parameters[21] * bias_a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_y_platform = 9.81
-            * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
-        ::core::result::Result::Ok([
-            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-                + g1_vx_right * force_on_u1_right
-                + minus_g2_vx_right * minus_force_on_u2_right,
-            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right
-                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let bias_rate_dot_2_left = k_left
+                * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
+            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+            let c2_left = t2_left * 20.0;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let minus_s2_left = 20.0 * det_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+            let bias_a2_x_left = c2_left
+                * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left
+                    * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+            let moment2_z_left = bias_rate_dot_2_left
+                * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
+                - parameters[9] * bias_a2_x_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                parameters[11],
+                qd_2_left,
+            );
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
+                - inv_l_2_mx_2_left;
+            let t3_left = parameters[6]
+                + bias_a1_y_left
+                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+                - parameters[2] * bias_a1_x_left
+                + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
+                - parameters[4] * minus_rate_1_left;
+            let force_on_u1_left = t3_left
+                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - minus_bias_rate_dot_1_left
+                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                        + parameters[3]) - tau_2_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                parameters[23],
+                minus_qd_2_right,
+            );
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
+                - inv_l_2_mx_2_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let t3_right = parameters[16] * rate_1_right
+                + bias_a1_y_right
+                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+                - parameters[14] * bias_a1_x_right
+                + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
+            let force_on_u1_right = minus_tau_2_right
+                + bias_rate_dot_1_right
+                    * (parameters[12]
+                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                        + parameters[15]) + parameters[18]
+                + ::overact::math::wide::signed(parameters[17], rate_1_right)
+                + t3_right;
+            let minus_bias_rate_dot_2_right = k_right
+                * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let c2_right = 20.0 * t2_right;
+            let s2_right = 20.0 * det_right;
+            let bias_a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+            let minus_moment2_z_right = minus_bias_rate_dot_2_right
+                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+                + parameters[21] * bias_a2_x_right;
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let force_y_platform = 9.81
+                * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
+            ::core::result::Result::Ok([
+                g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                    + g1_vx_right * force_on_u1_right
+                    + minus_g2_vx_right * minus_force_on_u2_right,
+                g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                    + g1_vy_right * force_on_u1_right
+                    + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
+            ])
+        })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -4719,136 +4925,150 @@ impl FiveBar {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = 0.5 * t2_left;
-        let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-            - base_parameters[15] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let tau_1_left = base_parameters[11]
-            - (base_parameters[7] * minus_rate_1_left
-                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[5] * bias_a1_x_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            - base_parameters[15] * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
-            + tau_1_left - tau_2_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
-            minus_qd_2_right,
-        );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = 0.5 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right
-            + base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            - base_parameters[16] * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
-            + tau_1_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - l_1_rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-        let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
-            + base_parameters[16] * bias_a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_y_platform = 9.81 * base_parameters[0];
-        ::core::result::Result::Ok([
-            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-                + g1_vx_right * force_on_u1_right
-                + minus_g2_vx_right * minus_force_on_u2_right,
-            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-                + g1_vy_right * force_on_u1_right
-                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / half
+            const INV_HALF: ::core::primitive::f64 = 10.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let inv_rho_squared_left = 1.0 / rho_squared_left;
+            let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+            let h_squared_left = L_1_SQUARED * inv_rho_squared_left
+                - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            let k_left = 1.0 / det_left;
+            let g2_vx_left = l1_x_left * k_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let bias_rate_dot_2_left = k_left
+                * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+            let c2_left = INV_HALF * t2_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+            let minus_s2_left = 20.0 * det_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let minus_bias_rate_dot_1_left = k_left
+                * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
+                - minus_s2_left
+                    * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+            let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+                - base_parameters[15] * bias_a2_x_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                base_parameters[17],
+                qd_2_left,
+            );
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            let tau_1_left = base_parameters[11]
+                - (base_parameters[7] * minus_rate_1_left
+                    + ::overact::math::wide::signed(
+                        base_parameters[9],
+                        minus_rate_1_left,
+                    ));
+            let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+                - base_parameters[5] * bias_a1_x_left
+                - base_parameters[1] * minus_bias_rate_dot_1_left
+                - base_parameters[15]
+                    * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
+                + tau_1_left - tau_2_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                base_parameters[18],
+                minus_qd_2_right,
+            );
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+            let tau_1_right = base_parameters[8] * rate_1_right
+                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
+                + base_parameters[12];
+            let force_on_u1_right = minus_tau_2_right
+                + base_parameters[2] * bias_rate_dot_1_right
+                + base_parameters[4] * bias_a1_y_right
+                - base_parameters[6] * bias_a1_x_right
+                - base_parameters[16]
+                    * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
+                + tau_1_right;
+            let minus_bias_rate_dot_2_right = k_right
+                * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let bias_a2_x_right = c2_right
+                * (bias_a1_x_right - l_1_rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+            let minus_moment2_z_right = base_parameters[14]
+                * minus_bias_rate_dot_2_right
+                + base_parameters[16] * bias_a2_x_right;
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let force_y_platform = 9.81 * base_parameters[0];
+            ::core::result::Result::Ok([
+                g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                    + g1_vx_right * force_on_u1_right
+                    + minus_g2_vx_right * minus_force_on_u2_right,
+                g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                    + g1_vy_right * force_on_u1_right
+                    + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
+            ])
+        })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -4875,178 +5095,198 @@ impl FiveBar {
                 ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
             ],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-        let m_2_right_minus_inv_l_2_mx_2_right = parameters[22] - inv_l_2_mx_2_right;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let t3_right = parameters[16] * rate_1_right
-            + bias_a1_y_right
-                * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-            - parameters[14] * bias_a1_x_right
-            + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
-        let force_on_u1_right = minus_tau_2_right
-            + bias_rate_dot_1_right
-                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                    + parameters[15]) + parameters[18]
-            + ::overact::math::signed(parameters[17], rate_1_right) + t3_right;
-        let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let minus_g1_vx_left = l2_x_left / det_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left / det_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-        let m_2_left_minus_inv_l_2_mx_2_left = parameters[10] - inv_l_2_mx_2_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let t2_left = parameters[6]
-            + bias_a1_y_left * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-            - parameters[2] * bias_a1_x_left
-            + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
-            - parameters[4] * minus_rate_1_left;
-        let g2_vx_left = l1_x_left / det_left;
-        let g2_vy_left = l1_y_left / det_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let t3_left = 0.5 * (rho_squared_left - 0.1025);
-        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
-            + rate_1_squared_left * t3_left) / det_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u1_left = t2_left
-            - ::overact::math::signed(parameters[5], minus_rate_1_left)
-            - minus_bias_rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                    + parameters[3]) - tau_2_left;
-        let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
-        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
-            + rate_2_squared_left * t3_left) / det_left;
-        let c2_left = t3_left * L_1_PER_HALF_SQUARED;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = bias_rate_dot_2_left
-            * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
-            - parameters[9] * bias_a2_x_left;
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        // --- right
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-        let minus_moment2_z_right = minus_bias_rate_dot_2_right
-            * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-            + parameters[21] * bias_a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let t1 = g1_vx_right * tau1_minus_force_on_u1_right
-            + minus_g1_vx_left * force_on_u1_minus_tau1_left
-            - (g2_vx_left * force_on_u2_left
-                + minus_g2_vx_right * minus_force_on_u2_right);
-        let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
-        let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
-            + parameters[3];
-        let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
-            + parameters[15];
-        let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
-        let masses_right_1_2 = L_1 * force1_y_by_2_right;
-        let t4_right = g2_vx_left
-            * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
-            - minus_g1_vx_left
-                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
-            + g1_vx_right
-                * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
-            - minus_g2_vx_right
-                * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
-        let mass_1_1 = t4_right + parameters[24];
-        ::overact::guard::mass(mass_1_1)?;
-        let t4_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
-        let t5_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
-        let t5_right = g1_vy_right * masses_right_1_1
-            - minus_g2_vy_right * masses_right_1_2;
-        let t6_right = g1_vy_right * masses_right_1_2
-            - minus_g2_vy_right * parameters[19];
-        let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
-            + g1_vx_right * t5_right - minus_g2_vx_right * t6_right;
-        let l_2_1 = mass_1_2 / mass_1_1;
-        let force_y_platform = 9.81
-            * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
-        let t2 = minus_g1_vy_left * force_on_u1_minus_tau1_left
-            - (force_y_platform + g2_vy_left * force_on_u2_left
-                + minus_g2_vy_right * minus_force_on_u2_right)
-            + g1_vy_right * tau1_minus_force_on_u1_right - t1 * l_2_1;
-        let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
-            + g1_vy_right * t5_right - minus_g2_vy_right * t6_right + parameters[24];
-        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let t3 = t2 / pivot_2;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// 1 / l_2
+            const INV_L_2: ::core::primitive::f64 = 4.0;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                parameters[23],
+                minus_qd_2_right,
+            );
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
+                - inv_l_2_mx_2_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let t3_right = parameters[16] * rate_1_right
+                + bias_a1_y_right
+                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
+                - parameters[14] * bias_a1_x_right
+                + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
+            let force_on_u1_right = minus_tau_2_right
+                + bias_rate_dot_1_right
+                    * (parameters[12]
+                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
+                        + parameters[15]) + parameters[18]
+                + ::overact::math::wide::signed(parameters[17], rate_1_right)
+                + t3_right;
+            let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let minus_g1_vx_left = l2_x_left / det_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left / det_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
+                - inv_l_2_mx_2_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let t2_left = parameters[6]
+                + bias_a1_y_left
+                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
+                - parameters[2] * bias_a1_x_left
+                + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
+                - parameters[4] * minus_rate_1_left;
+            let g2_vx_left = l1_x_left / det_left;
+            let g2_vy_left = l1_y_left / det_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let t3_left = 0.5 * (rho_squared_left - 0.1025);
+            let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+                + rate_1_squared_left * t3_left) / det_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                parameters[11],
+                qd_2_left,
+            );
+            let force_on_u1_left = t2_left
+                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - minus_bias_rate_dot_1_left
+                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
+                        + parameters[3]) - tau_2_left;
+            let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
+            let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
+                + rate_2_squared_left * t3_left) / det_left;
+            let c2_left = t3_left * 20.0;
+            let minus_s2_left = 20.0 * det_left;
+            let bias_a2_x_left = c2_left
+                * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left
+                    * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+            let moment2_z_left = bias_rate_dot_2_left
+                * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
+                - parameters[9] * bias_a2_x_left;
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            // --- right
+            let minus_bias_rate_dot_2_right = k_right
+                * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let c2_right = 20.0 * t2_right;
+            let s2_right = 20.0 * det_right;
+            let bias_a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+            let minus_moment2_z_right = minus_bias_rate_dot_2_right
+                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
+                + parameters[21] * bias_a2_x_right;
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let t1 = g1_vx_right * tau1_minus_force_on_u1_right
+                + minus_g1_vx_left * force_on_u1_minus_tau1_left
+                - (g2_vx_left * force_on_u2_left
+                    + minus_g2_vx_right * minus_force_on_u2_right);
+            let force1_y_by_2_left = c2_left * parameters[8]
+                + minus_s2_left * parameters[9];
+            let masses_left_1_2 = L_1 * force1_y_by_2_left;
+            let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
+                + parameters[3];
+            let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
+                + parameters[15];
+            let force1_y_by_2_right = c2_right * parameters[20]
+                - s2_right * parameters[21];
+            let masses_right_1_2 = L_1 * force1_y_by_2_right;
+            let t4_right = g2_vx_left
+                * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
+                - minus_g1_vx_left
+                    * (g2_vx_left * masses_left_1_2
+                        - minus_g1_vx_left * masses_left_1_1)
+                + g1_vx_right
+                    * (g1_vx_right * masses_right_1_1
+                        - minus_g2_vx_right * masses_right_1_2)
+                - minus_g2_vx_right
+                    * (g1_vx_right * masses_right_1_2
+                        - minus_g2_vx_right * parameters[19]);
+            let mass_1_1 = t4_right + parameters[24];
+            ::overact::guard::mass(mass_1_1)?;
+            let t4_left = g2_vy_left * parameters[7]
+                - minus_g1_vy_left * masses_left_1_2;
+            let t5_left = g2_vy_left * masses_left_1_2
+                - minus_g1_vy_left * masses_left_1_1;
+            let t5_right = g1_vy_right * masses_right_1_1
+                - minus_g2_vy_right * masses_right_1_2;
+            let t6_right = g1_vy_right * masses_right_1_2
+                - minus_g2_vy_right * parameters[19];
+            let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
+                + g1_vx_right * t5_right - minus_g2_vx_right * t6_right;
+            let l_2_1 = mass_1_2 / mass_1_1;
+            let force_y_platform = 9.81
+                * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
+            let t2 = minus_g1_vy_left * force_on_u1_minus_tau1_left
+                - (force_y_platform + g2_vy_left * force_on_u2_left
+                    + minus_g2_vy_right * minus_force_on_u2_right)
+                + g1_vy_right * tau1_minus_force_on_u1_right - t1 * l_2_1;
+            let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
+                + g1_vy_right * t5_right - minus_g2_vy_right * t6_right
+                + parameters[24];
+            let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+            ::overact::guard::mass(pivot_2)?;
+            let t3 = t2 / pivot_2;
+            ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+        })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -5074,165 +5314,180 @@ impl FiveBar {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// half
-        const HALF: ::core::primitive::f64 = 0.1;
-        /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half²
-        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
-        /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let t1_right = 0.5 - 0.01125 / rho_squared_right;
-        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
-            minus_qd_2_right,
-        );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = 0.5 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
-        let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right
-            + base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
-            + tau_1_right;
-        let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
-        // --- left
-        let d_x_left = pose[0] + HALF;
-        let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let t1_left = 0.5 - 0.01125 / rho_squared_left;
-        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g2_vx_left = l1_x_left / det_left;
-        let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left / det_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left / det_left;
-        let minus_rate_1_left = minus_g1_vx_left * twist[0]
-            + minus_g1_vy_left * twist[1];
-        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left / det_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = 0.5 * (rho_squared_left - 0.1025);
-        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
-            + rate_2_squared_left * t2_left) / det_left;
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
-            + rate_1_squared_left * t2_left) / det_left;
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-            - base_parameters[15] * bias_a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        // --- right
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-        let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
-            + base_parameters[16] * bias_a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        // --- left
-        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
-        let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let tau_1_left = base_parameters[11]
-            - (base_parameters[7] * minus_rate_1_left
-                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[5] * bias_a1_x_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
-            - tau_2_left;
-        let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
-        let t1 = g1_vx_right * tau1_minus_force_on_u1_right
-            + minus_g1_vx_left * force_on_u1_minus_tau1_left
-            - (g2_vx_left * force_on_u2_left
-                + minus_g2_vx_right * minus_force_on_u2_right);
-        let t3_right = g2_vx_left
-            * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
-            - minus_g1_vx_left
-                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * base_parameters[1])
-            + g1_vx_right
-                * (g1_vx_right * base_parameters[2]
-                    + minus_g2_vx_right * minus_masses_right_1_2)
-            + minus_g2_vx_right
-                * (g1_vx_right * minus_masses_right_1_2
-                    + minus_g2_vx_right * base_parameters[14]);
-        let mass_1_1 = t3_right + base_parameters[0];
-        ::overact::guard::mass(mass_1_1)?;
-        let t3_left = g2_vy_left * base_parameters[13]
-            - minus_g1_vy_left * masses_left_1_2;
-        let t4_left = g2_vy_left * masses_left_1_2
-            - minus_g1_vy_left * base_parameters[1];
-        let t4_right = g1_vy_right * base_parameters[2]
-            + minus_g2_vy_right * minus_masses_right_1_2;
-        let t5_right = g1_vy_right * minus_masses_right_1_2
-            + minus_g2_vy_right * base_parameters[14];
-        let mass_1_2 = g2_vx_left * t3_left - minus_g1_vx_left * t4_left
-            + g1_vx_right * t4_right + minus_g2_vx_right * t5_right;
-        let l_2_1 = mass_1_2 / mass_1_1;
-        let force_y_platform = 9.81 * base_parameters[0];
-        let t2 = g1_vy_right * tau1_minus_force_on_u1_right
-            + minus_g1_vy_left * force_on_u1_minus_tau1_left
-            - (force_y_platform + g2_vy_left * force_on_u2_left
-                + minus_g2_vy_right * minus_force_on_u2_right) - t1 * l_2_1;
-        let mass_2_2 = g2_vy_left * t3_left - minus_g1_vy_left * t4_left
-            + g1_vy_right * t4_right + minus_g2_vy_right * t5_right + base_parameters[0];
-        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let t3 = t2 / pivot_2;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+        ::overact::widest(#[inline(always)] || {
+            /// half
+            const HALF: ::core::primitive::f64 = 0.1;
+            /// l_1
+            const L_1: ::core::primitive::f64 = 0.2;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            /// l_2²
+            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let y_squared = pose[1] * pose[1];
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let minus_rate_2_right = minus_g2_vx_right * twist[0]
+                + minus_g2_vy_right * twist[1];
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let minus_tau_2_right = ::overact::math::wide::signed(
+                base_parameters[18],
+                minus_qd_2_right,
+            );
+            let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+            let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+            let rate_1_squared_right = rate_1_right * rate_1_right;
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let bias_rate_dot_1_right = k_right
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            let s2_right = 20.0 * det_right;
+            let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+            let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let tau_1_right = base_parameters[8] * rate_1_right
+                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
+                + base_parameters[12];
+            let force_on_u1_right = minus_tau_2_right
+                + base_parameters[2] * bias_rate_dot_1_right
+                + base_parameters[4] * bias_a1_y_right
+                - base_parameters[6] * bias_a1_x_right
+                + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
+                + tau_1_right;
+            let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
+            // --- left
+            let d_x_left = pose[0] + HALF;
+            let rho_squared_left = d_x_left * d_x_left + y_squared;
+            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            let t1_left = 0.5 - 0.01125 / rho_squared_left;
+            let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+            ::overact::guard::reach(h_squared_left, "left")?;
+            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let g2_vx_left = l1_x_left / det_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left / det_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left / det_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+            let g2_vy_left = l1_y_left / det_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
+                + rate_2_squared_left * t2_left) / det_left;
+            let c2_left = t2_left * 20.0;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            let minus_s2_left = 20.0 * det_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+            let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+                + rate_1_squared_left * t2_left) / det_left;
+            let bias_a2_x_left = c2_left
+                * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left
+                    * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+            let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+                - base_parameters[15] * bias_a2_x_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let tau_2_left = ::overact::math::wide::signed(
+                base_parameters[17],
+                qd_2_left,
+            );
+            let force_on_u2_left = moment2_z_left + tau_2_left;
+            // --- right
+            let minus_bias_rate_dot_2_right = k_right
+                * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let c2_right = 20.0 * t2_right;
+            let bias_a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+            let minus_moment2_z_right = base_parameters[14]
+                * minus_bias_rate_dot_2_right
+                + base_parameters[16] * bias_a2_x_right;
+            let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            // --- left
+            let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+            let masses_left_1_2 = L_1 * force1_y_by_2_left;
+            let tau_1_left = base_parameters[11]
+                - (base_parameters[7] * minus_rate_1_left
+                    + ::overact::math::wide::signed(
+                        base_parameters[9],
+                        minus_rate_1_left,
+                    ));
+            let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+                - base_parameters[5] * bias_a1_x_left
+                - base_parameters[1] * minus_bias_rate_dot_1_left
+                + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
+                - tau_2_left;
+            let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
+            let t1 = g1_vx_right * tau1_minus_force_on_u1_right
+                + minus_g1_vx_left * force_on_u1_minus_tau1_left
+                - (g2_vx_left * force_on_u2_left
+                    + minus_g2_vx_right * minus_force_on_u2_right);
+            let t3_right = g2_vx_left
+                * (g2_vx_left * base_parameters[13]
+                    - minus_g1_vx_left * masses_left_1_2)
+                - minus_g1_vx_left
+                    * (g2_vx_left * masses_left_1_2
+                        - minus_g1_vx_left * base_parameters[1])
+                + g1_vx_right
+                    * (g1_vx_right * base_parameters[2]
+                        + minus_g2_vx_right * minus_masses_right_1_2)
+                + minus_g2_vx_right
+                    * (g1_vx_right * minus_masses_right_1_2
+                        + minus_g2_vx_right * base_parameters[14]);
+            let mass_1_1 = t3_right + base_parameters[0];
+            ::overact::guard::mass(mass_1_1)?;
+            let t3_left = g2_vy_left * base_parameters[13]
+                - minus_g1_vy_left * masses_left_1_2;
+            let t4_left = g2_vy_left * masses_left_1_2
+                - minus_g1_vy_left * base_parameters[1];
+            let t4_right = g1_vy_right * base_parameters[2]
+                + minus_g2_vy_right * minus_masses_right_1_2;
+            let t5_right = g1_vy_right * minus_masses_right_1_2
+                + minus_g2_vy_right * base_parameters[14];
+            let mass_1_2 = g2_vx_left * t3_left - minus_g1_vx_left * t4_left
+                + g1_vx_right * t4_right + minus_g2_vx_right * t5_right;
+            let l_2_1 = mass_1_2 / mass_1_1;
+            let force_y_platform = 9.81 * base_parameters[0];
+            let t2 = g1_vy_right * tau1_minus_force_on_u1_right
+                + minus_g1_vy_left * force_on_u1_minus_tau1_left
+                - (force_y_platform + g2_vy_left * force_on_u2_left
+                    + minus_g2_vy_right * minus_force_on_u2_right) - t1 * l_2_1;
+            let mass_2_2 = g2_vy_left * t3_left - minus_g1_vy_left * t4_left
+                + g1_vy_right * t4_right + minus_g2_vy_right * t5_right
+                + base_parameters[0];
+            let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+            ::overact::guard::mass(pivot_2)?;
+            let t3 = t2 / pivot_2;
+            ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+        })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///

@@ -492,466 +492,523 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
-        let u2_xz_arm = c2_arm * joint_accelerations[0];
-        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
-        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
-        let minus_yy_2_on_q1 = c2_arm * u2_zx_arm;
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let minus_xx_2_on_q2 = w2_x_arm * w2_y_arm;
-        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
-        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let u2_yx_arm = minus_xx_2_on_q2 + joint_accelerations[1];
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let xz_2_on_q1 = s2_arm * u2_yx_arm
-            + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
-        let u2_xy_arm = minus_xx_2_on_q2 - joint_accelerations[1];
-        let a2_y_arm = 9.81 * c2_arm;
-        let a2_x_arm = 9.81 * s2_arm;
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let w3_x_arm = joint_velocities[0] * s23_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
-        let u3_xz_arm = joint_accelerations[0] * c23_arm;
-        let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
-        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-        let minus_yy_3_on_q1 = c23_arm * u3_zx_arm;
-        let xx_3_on_q1 = joint_accelerations[0] + minus_yy_3_on_q1;
-        let w3_y_arm = joint_velocities[0] * c23_arm;
-        let minus_xx_3_on_q2 = w3_x_arm * w3_y_arm;
-        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let minus_u3_yz_arm = joint_accelerations[0] * s23_arm;
-        let wd3_x_arm = w3_y_w3_z_arm + minus_u3_yz_arm;
-        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
-        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-        let u3_yx_arm = minus_xx_3_on_q2 + wd3_z_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let u3_xy_arm = minus_xx_3_on_q2 - wd3_z_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let a3_z_arm = D3 * u2_zx_arm;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
-        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let d3_u3_xy_arm = D3 * u3_xy_arm;
-        let t1_arm = s3_arm * d3_u3_xy_arm - v3_by_2_y_arm * minus_u3_yy_arm;
-        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
-        let w4_by_1_x_arm = s23_arm * c4_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
-        let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
-        let xx_4_on_q1 = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
-            + c23_arm * xx_4_on_q4;
-        let zz_4_on_q2 = w3_x_arm * w4_z_arm;
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let s4_u4_zy_arm = s4_arm * u4_zy_arm;
-        let minus_xx_4_on_q2 = zz_4_on_q2 + s4_u4_zy_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let u3_yy_minus_u4_xx_arm = minus_u4_xx_arm - minus_u3_yy_arm;
-        let t2_arm = w4_y_squared_arm - w4_z_squared_arm;
-        let minus_xy_4_on_q4 = u3_yy_minus_u4_xx_arm + t2_arm;
-        let yy_4_on_q2 = minus_xx_4_on_q2 - u3_xy_arm;
-        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
-            + joint_velocities[3] * w4_x_arm;
-        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
-        let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
-        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-        let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-        let s4_u4_yx_arm = s4_arm * u4_yx_arm;
-        let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * u3_yy_minus_u4_xx_arm;
-        let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
-        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-        let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
-        let minus_yz_4_on_q2 = s4_arm * t2_arm + minus_c4_u4_xy_arm;
-        let zz_4_on_q1 = w5_by_1_z_w4_x_w4_z_arm - w4_by_1_x_arm * minus_w4_y_w4_z_arm
-            + c23_arm * wd4_z_arm;
-        let t3_arm = D3 * (s23_arm - c2_arm);
-        let minus_v4_by_1_x_arm = s4_arm * t3_arm;
-        let v5_by_1_z_arm = c4_arm * t3_arm;
-        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + d3_u3_xy_arm;
-        let t4_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t4_arm;
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let t5_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
-        let t6_arm = 1.0 - s3_arm;
-        let c4_a4_z_arm = c4_arm * a4_z_arm;
-        let minus_u4_yy_arm = minus_u4_xx_arm - minus_xy_4_on_q4;
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t4_arm;
-        let my_4_on_q1 = minus_v4_by_1_x_arm * minus_u4_xy_arm
-            + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
-            - c23_arm * a4_x_arm;
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let t7_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
-        let s4_a4_z_arm = s4_arm * a4_z_arm;
-        let my_4_on_q2 = t7_arm * t6_arm + v3_by_2_y_arm * u4_zy_arm - s4_a4_z_arm;
-        let my_4_on_q3 = t7_arm - s4_a4_z_arm;
-        let minus_mz_4_on_q3 = d3_u3_xy_arm + a3_x_plus_d3_u3_xy_arm;
-        let m_4_on_q1 = t3_arm * t4_arm;
-        let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
-        let m_4_on_q2 = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t6_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
-            + joint_velocities[4] * w5_y_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
-        let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
-        let xx_5_on_q1 = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
-            - w5_by_1_z_arm * minus_xx_5_on_q5;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm - wd5_x_arm * minus_w5_by_2_x_arm
-            - c4_arm * minus_xx_5_on_q5;
-        let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let s5_u5_zy_arm = s5_arm * u5_zy_arm;
-        let xx_5_on_q4 = minus_zz_5_on_q4 + s5_u5_zy_arm;
-        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
-            - joint_velocities[4] * w5_x_arm;
-        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
-        let minus_u5_yy_arm = minus_u4_yy_arm - t8_arm;
-        let xy_5_on_q5 = minus_u5_yy_arm - minus_u5_xx_arm;
-        let yy_5_on_q4 = minus_u4_xy_arm - xx_5_on_q4;
-        let xy_5_on_q2 = s4_arm * (xx_5_on_q4 - yy_5_on_q4) + c4_arm * xy_5_on_q5;
-        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-        let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
-        let t9_arm = xy_5_on_q5 + t8_arm;
-        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-        let minus_xz_5_on_q2 = w5_by_2_y_arm * t9_arm + minus_w5_by_2_x_arm * u5_yx_arm
-            + c4_arm * u5_yz_arm;
-        let minus_yy_5_on_q2 = s4_u4_zy_arm + xx_5_on_q2;
-        let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-        let yz_5_on_q2 = c4_arm * u5_xz_arm
-            - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
-        let zz_5_on_q1 = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
-            + w5_by_1_z_arm * wd5_z_arm;
-        let zz_5_on_q2 = c4_arm * wd5_z_arm
-            - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t6_arm;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm - minus_v5_by_3_x_arm * t6_arm;
-        let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
-        let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
-            - a5_z_arm * w5_by_2_y_arm;
-        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-        let my_5_on_q1 = v5_by_1_z_arm * u5_zy_arm
-            - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
-            + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
-        let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
-        let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
-            + c4_arm * a5_x_arm;
-        let my_5_on_q2 = v5_by_2_x_arm * u5_xy_arm - v5_by_2_y_arm * minus_u5_yy_arm
-            - v4_by_3_y_u5_zy_arm * t6_arm - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
-        let minus_my_5_on_q3 = minus_v5_by_3_x_arm * u5_xy_arm
-            + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
-            + c4_a5_x_minus_a5_z_w5_by_2_x_arm;
-        let my_5_on_q4 = s5_arm * a5_z_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
-        let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
-        let xx_6_on_q1 = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
-            + w5_by_1_y_arm * xx_6_on_q6;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm - wd6_x_arm * minus_w6_by_2_x_arm
-            + w5_by_2_y_arm * xx_6_on_q6;
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
-        let xx_6_on_q4 = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
-            + c5_arm * xx_6_on_q6;
-        let zz_6_on_q5 = w5_x_arm * w6_z_arm;
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let minus_xx_6_on_q5 = zz_6_on_q5 + s6_arm * u6_zy_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
-        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
-        let minus_xy_6_on_q6 = t10_arm + u6_yy_minus_u5_yy_arm;
-        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-        let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm + w6_by_2_y_arm * u6_zy_arm
-            - w5_by_2_y_arm * minus_xy_6_on_q6;
-        let yy_6_on_q5 = minus_xx_6_on_q5 - u5_xy_arm;
-        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-        let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
-        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-        let xz_6_on_q2 = w6_by_2_y_arm * t10_arm - minus_w6_by_2_x_arm * u6_yx_arm
-            + w5_by_2_y_arm * minus_u6_yz_arm;
-        let yy_6_on_q2 = zz_5_on_q2 + xx_5_on_q2 - xx_6_on_q2;
-        let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
-            - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm + w5_by_2_y_arm * u6_xz_arm;
-        let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
-            - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
-        let minus_v6_by_1_x_arm = t3_arm * minus_w6_by_2_x_arm;
-        let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
-        let v6_by_1_y_arm = t3_arm * w6_by_2_y_arm;
-        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-        let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t6_arm;
-        let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm - c6_v4_by_3_y_arm * t6_arm;
-        let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
-        let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-        ::core::result::Result::Ok([
-            [
-                joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0,
-                joint_accelerations[0] + minus_yy_2_on_q1, c2_arm * u2_zy_arm - s2_arm * u2_zx_arm,
-                xz_2_on_q1, -minus_yy_2_on_q1,
-                s2_arm * (w2_y_squared_arm - rate_2_squared_arm) - c2_arm * u2_xy_arm, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, xx_3_on_q1, c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
-                s23_arm * u3_yx_arm + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
-                -minus_yy_3_on_q1,
-                s23_arm * (w3_y_squared_arm - w3_z_squared_arm) - c23_arm * u3_xy_arm, 0.0,
-                -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
-                s23_arm * a3_z_arm - minus_v3_by_1_z_arm * u3_zy_arm, -(D3 * xz_2_on_q1),
-                -(minus_v3_by_1_z_arm * a3_z_arm), 0.0, 0.0, 0.0, 0.0, xx_4_on_q1,
-                -(c23_arm * minus_xy_4_on_q4
-                    + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2)),
-                w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm
-                    + c23_arm * minus_u4_yz_arm,
-                xx_3_on_q1 - xx_4_on_q1,
-                w4_by_1_x_arm * t2_arm - w5_by_1_z_arm * minus_u4_xy_arm
-                    + c23_arm * u4_xz_arm,
-                zz_4_on_q1,
-                minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
-                    + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
-                my_4_on_q1,
-                u3_zy_arm * t3_arm + s23_arm * t4_arm,
-                m_4_on_q1,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                xx_5_on_q1,
-                w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
-                    + w5_by_1_z_arm * xy_5_on_q5,
-                w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm
-                    - w5_by_1_z_arm * u5_yz_arm,
-                zz_4_on_q1 + xx_4_on_q1 - xx_5_on_q1,
-                w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
-                    + w5_by_1_z_arm * u5_xz_arm,
-                zz_5_on_q1,
-                minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
-                    + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
-                    - w5_by_1_y_arm * a5_z_arm,
-                my_5_on_q1,
-                -my_4_on_q1,
-                m_4_on_q1,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                xx_6_on_q1,
-                -(w5_by_1_y_arm * minus_xy_6_on_q6 + w6_by_1_x_arm * u6_zx_arm
-                    + minus_w6_by_1_y_arm * u6_zy_arm),
-                w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
-                    + w5_by_1_y_arm * minus_u6_yz_arm,
-                zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1,
-                w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
-                    - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm,
-                minus_w6_by_1_y_w6_x_w6_z_arm - w6_by_1_x_arm * minus_w6_y_w6_z_arm
-                    + w5_by_1_y_arm * wd6_z_arm,
-                minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
-                    + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
-                    - w5_by_1_y_arm * minus_a6_y_arm,
-                minus_v6_by_1_x_arm * minus_u6_xy_arm - v6_by_1_y_arm * minus_u6_yy_arm
-                    + v5_by_1_y_arm * u6_zy_arm + w6_by_1_x_arm * a5_y_arm
-                    - w5_by_1_y_arm * a6_x_arm,
-                my_5_on_q1,
-                m_4_on_q1,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, -minus_xx_2_on_q2, w2_x_squared_arm - w2_y_squared_arm,
-                minus_u2_yz_arm, minus_xx_2_on_q2, u2_xz_arm, joint_accelerations[1], a2_y_arm,
-                -a2_x_arm, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -minus_xx_3_on_q2, xy_3_on_q2,
-                minus_u3_yz_arm, minus_xx_3_on_q2, u3_xz_arm, wd3_z_arm,
-                v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm,
-                t1_arm - a3_x_arm, -(D3 * minus_u2_yz_arm), D3 * a2_y_plus_d3_u2_yx_arm, 0.0, 0.0,
-                0.0, 0.0, -minus_xx_4_on_q2, xy_4_on_q2, -minus_xz_4_on_q2, yy_4_on_q2,
-                -minus_yz_4_on_q2, zz_4_on_q2,
-                v3_by_2_y_arm * u4_zx_arm + t5_arm * t6_arm + c4_a4_z_arm, my_4_on_q2,
-                t1_arm - minus_mz_4_on_q3, m_4_on_q2, 0.0, 0.0, 0.0, 0.0, xx_5_on_q2, xy_5_on_q2,
-                -minus_xz_5_on_q2, -minus_yy_5_on_q2, yz_5_on_q2, zz_5_on_q2,
-                v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
-                    - v4_by_3_y_u5_zx_arm * t6_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
-                my_5_on_q2,
-                -my_4_on_q2,
-                m_4_on_q2,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                xx_6_on_q2,
-                xy_6_on_q2,
-                xz_6_on_q2,
-                yy_6_on_q2,
-                yz_6_on_q2,
-                zz_6_on_q2,
-                v5_by_2_y_arm * u6_zx_arm
-                    - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
-                    - t11_arm,
-                minus_v6_by_2_y_arm * minus_u6_yy_arm - v6_by_2_x_arm * minus_u6_xy_arm
-                    + v5_by_2_y_arm * u6_zy_arm - t12_arm,
-                my_5_on_q2,
-                m_4_on_q2,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -minus_xx_3_on_q2, xy_3_on_q2, minus_u3_yz_arm, minus_xx_3_on_q2, u3_xz_arm,
-                wd3_z_arm, a3_y_arm, -a3_x_arm, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0,
-                -minus_xx_4_on_q2, xy_4_on_q2, -minus_xz_4_on_q2, yy_4_on_q2, -minus_yz_4_on_q2,
-                zz_4_on_q2, t5_arm + c4_a4_z_arm, my_4_on_q3, -minus_mz_4_on_q3, -minus_m_4_on_q3,
-                0.0, 0.0, 0.0, 0.0, xx_5_on_q2, xy_5_on_q2, -minus_xz_5_on_q2, -minus_yy_5_on_q2,
-                yz_5_on_q2, zz_5_on_q2,
-                minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
-                    - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
-                -minus_my_5_on_q3,
-                -my_4_on_q3,
-                -minus_m_4_on_q3,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                xx_6_on_q2,
-                xy_6_on_q2,
-                xz_6_on_q2,
-                yy_6_on_q2,
-                yz_6_on_q2,
-                zz_6_on_q2,
-                v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
-                    + v5_by_3_y_arm * u6_zx_arm - t11_arm,
-                v5_by_3_y_arm * u6_zy_arm
-                    - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
-                    - t12_arm,
-                -minus_my_5_on_q3,
-                -minus_m_4_on_q3,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xx_4_on_q4,
-                -minus_xy_4_on_q4, minus_u4_yz_arm, -xx_4_on_q4, u4_xz_arm, wd4_z_arm, -a5_z_arm,
-                -a4_x_arm, 0.0, 0.0, joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, xx_5_on_q4,
-                c5_arm * u5_zy_arm - s5_arm * u5_zx_arm, s5_arm * u5_yx_arm - c5_arm * t9_arm,
-                yy_5_on_q4, s5_arm * t8_arm - c5_arm * u5_xy_arm, -minus_zz_5_on_q4,
-                -(c5_arm * a5_z_arm), my_5_on_q4, a4_x_arm, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q4,
-                -(c5_arm * minus_xy_6_on_q6 + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5)),
-                w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
-                    + c5_arm * minus_u6_yz_arm,
-                s5_u5_zy_arm - xx_6_on_q4,
-                w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
-                    - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
-                minus_w6_by_4_y_w6_x_w6_z_arm - w6_by_4_x_arm * minus_w6_y_w6_z_arm
-                    + c5_arm * wd6_z_arm,
-                a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
-                a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
-                my_5_on_q4,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_xx_5_on_q5,
-                xy_5_on_q5, -u5_yz_arm, minus_xx_5_on_q5, u5_xz_arm, wd5_z_arm, a5_y_arm, -a5_x_arm,
-                0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -minus_xx_6_on_q5,
-                s6_arm * u6_zx_arm - c6_arm * u6_zy_arm, -(s6_arm * u6_yx_arm + c6_arm * t10_arm),
-                yy_6_on_q5, -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm),
-                zz_6_on_q5, c6_arm * a5_y_arm, -(s6_arm * a5_y_arm), -a5_x_arm, 0.0, 0.0, 0.0, 0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q6, -minus_xy_6_on_q6,
-                minus_u6_yz_arm, -xx_6_on_q6, u6_xz_arm, wd6_z_arm, -minus_a6_y_arm, -a6_x_arm, 0.0,
-                0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+            let u2_xz_arm = c2_arm * joint_accelerations[0];
+            let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+            let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let minus_yy_2_on_q1 = c2_arm * u2_zx_arm;
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let minus_xx_2_on_q2 = w2_x_arm * w2_y_arm;
+            let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+            let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+            let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+            let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let u2_yx_arm = minus_xx_2_on_q2 + joint_accelerations[1];
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let xz_2_on_q1 = s2_arm * u2_yx_arm
+                + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
+            let u2_xy_arm = minus_xx_2_on_q2 - joint_accelerations[1];
+            let a2_y_arm = 9.81 * c2_arm;
+            let a2_x_arm = 9.81 * s2_arm;
+            let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
+            let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
+            let w3_x_arm = joint_velocities[0] * s23_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+            let u3_xz_arm = joint_accelerations[0] * c23_arm;
+            let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
+            let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let minus_yy_3_on_q1 = c23_arm * u3_zx_arm;
+            let xx_3_on_q1 = joint_accelerations[0] + minus_yy_3_on_q1;
+            let w3_y_arm = joint_velocities[0] * c23_arm;
+            let minus_xx_3_on_q2 = w3_x_arm * w3_y_arm;
+            let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+            let minus_u3_yz_arm = joint_accelerations[0] * s23_arm;
+            let wd3_x_arm = w3_y_w3_z_arm + minus_u3_yz_arm;
+            let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
+            let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+            let u3_yx_arm = minus_xx_3_on_q2 + wd3_z_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let u3_xy_arm = minus_xx_3_on_q2 - wd3_z_arm;
+            let minus_v3_by_1_z_arm = D3 * c2_arm;
+            let a3_z_arm = D3 * u2_zx_arm;
+            let v3_by_2_y_arm = D3 * c3_arm;
+            let v3_by_2_x_arm = D3 * s3_arm;
+            let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+            let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+            let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
+                - s3_arm * a2_x_plus_d3_u2_xx_arm;
+            let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let d3_u3_xy_arm = D3 * u3_xy_arm;
+            let t1_arm = s3_arm * d3_u3_xy_arm - v3_by_2_y_arm * minus_u3_yy_arm;
+            let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
+                + s3_arm * a2_y_plus_d3_u2_yx_arm;
+            let w4_by_1_x_arm = s23_arm * c4_arm;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let w5_by_1_z_arm = s23_arm * s4_arm;
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
+            let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
+            let xx_4_on_q1 = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+                + c23_arm * xx_4_on_q4;
+            let zz_4_on_q2 = w3_x_arm * w4_z_arm;
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+            let s4_u4_zy_arm = s4_arm * u4_zy_arm;
+            let minus_xx_4_on_q2 = zz_4_on_q2 + s4_u4_zy_arm;
+            let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+            let u3_yy_minus_u4_xx_arm = minus_u4_xx_arm - minus_u3_yy_arm;
+            let t2_arm = w4_y_squared_arm - w4_z_squared_arm;
+            let minus_xy_4_on_q4 = u3_yy_minus_u4_xx_arm + t2_arm;
+            let yy_4_on_q2 = minus_xx_4_on_q2 - u3_xy_arm;
+            let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+                + joint_velocities[3] * w4_x_arm;
+            let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
+            let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+            let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
+            let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+            let s4_u4_yx_arm = s4_arm * u4_yx_arm;
+            let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * u3_yy_minus_u4_xx_arm;
+            let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
+            let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+            let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
+            let minus_yz_4_on_q2 = s4_arm * t2_arm + minus_c4_u4_xy_arm;
+            let zz_4_on_q1 = w5_by_1_z_w4_x_w4_z_arm
+                - w4_by_1_x_arm * minus_w4_y_w4_z_arm + c23_arm * wd4_z_arm;
+            let t3_arm = D3 * (s23_arm - c2_arm);
+            let minus_v4_by_1_x_arm = s4_arm * t3_arm;
+            let v5_by_1_z_arm = c4_arm * t3_arm;
+            let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+            let a3_x_plus_d3_u3_xy_arm = a3_x_arm + d3_u3_xy_arm;
+            let t4_arm = D3 * (u2_zx_arm + u3_zy_arm);
+            let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t4_arm;
+            let minus_v4_by_3_x_arm = D3 * c4_arm;
+            let t5_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
+            let t6_arm = 1.0 - s3_arm;
+            let c4_a4_z_arm = c4_arm * a4_z_arm;
+            let minus_u4_yy_arm = minus_u4_xx_arm - minus_xy_4_on_q4;
+            let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t4_arm;
+            let my_4_on_q1 = minus_v4_by_1_x_arm * minus_u4_xy_arm
+                + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
+                - c23_arm * a4_x_arm;
+            let v4_by_3_y_arm = D3 * s4_arm;
+            let t7_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
+            let s4_a4_z_arm = s4_arm * a4_z_arm;
+            let my_4_on_q2 = t7_arm * t6_arm + v3_by_2_y_arm * u4_zy_arm
+                - s4_a4_z_arm;
+            let my_4_on_q3 = t7_arm - s4_a4_z_arm;
+            let minus_mz_4_on_q3 = d3_u3_xy_arm + a3_x_plus_d3_u3_xy_arm;
+            let m_4_on_q1 = t3_arm * t4_arm;
+            let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
+            let m_4_on_q2 = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t6_arm;
+            let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+                + joint_velocities[4] * w5_y_arm;
+            let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
+            let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
+            let xx_5_on_q1 = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+                - w5_by_1_z_arm * minus_xx_5_on_q5;
+            let w5_by_2_y_arm = s4_arm * s5_arm;
+            let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
+            let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+            let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm
+                - wd5_x_arm * minus_w5_by_2_x_arm - c4_arm * minus_xx_5_on_q5;
+            let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+            let s5_u5_zy_arm = s5_arm * u5_zy_arm;
+            let xx_5_on_q4 = minus_zz_5_on_q4 + s5_u5_zy_arm;
+            let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+                - joint_velocities[4] * w5_x_arm;
+            let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
+            let minus_u5_yy_arm = minus_u4_yy_arm - t8_arm;
+            let xy_5_on_q5 = minus_u5_yy_arm - minus_u5_xx_arm;
+            let yy_5_on_q4 = minus_u4_xy_arm - xx_5_on_q4;
+            let xy_5_on_q2 = s4_arm * (xx_5_on_q4 - yy_5_on_q4)
+                + c4_arm * xy_5_on_q5;
+            let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+            let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
+            let t9_arm = xy_5_on_q5 + t8_arm;
+            let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+            let minus_xz_5_on_q2 = w5_by_2_y_arm * t9_arm
+                + minus_w5_by_2_x_arm * u5_yx_arm + c4_arm * u5_yz_arm;
+            let minus_yy_5_on_q2 = s4_u4_zy_arm + xx_5_on_q2;
+            let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
+            let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+            let yz_5_on_q2 = c4_arm * u5_xz_arm
+                - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
+            let zz_5_on_q1 = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+                + w5_by_1_z_arm * wd5_z_arm;
+            let zz_5_on_q2 = c4_arm * wd5_z_arm
+                - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
+            let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+            let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+            let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+            let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+            let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t6_arm;
+            let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+            let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm
+                - minus_v5_by_3_x_arm * t6_arm;
+            let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
+            let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
+                - a5_z_arm * w5_by_2_y_arm;
+            let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+            let my_5_on_q1 = v5_by_1_z_arm * u5_zy_arm
+                - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
+                + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
+            let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
+            let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
+                + c4_arm * a5_x_arm;
+            let my_5_on_q2 = v5_by_2_x_arm * u5_xy_arm
+                - v5_by_2_y_arm * minus_u5_yy_arm - v4_by_3_y_u5_zy_arm * t6_arm
+                - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
+            let minus_my_5_on_q3 = minus_v5_by_3_x_arm * u5_xy_arm
+                + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
+                + c4_a5_x_minus_a5_z_w5_by_2_x_arm;
+            let my_5_on_q4 = s5_arm * a5_z_arm;
+            let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm
+                + w5_by_1_z_arm * c6_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
+            let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
+            let xx_6_on_q1 = w6_by_1_x_arm * wd6_x_arm
+                - minus_w6_by_1_y_w6_x_w6_z_arm + w5_by_1_y_arm * xx_6_on_q6;
+            let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+            let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
+            let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+            let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm
+                - wd6_x_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * xx_6_on_q6;
+            let w6_by_4_x_arm = s5_arm * c6_arm;
+            let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+            let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
+            let xx_6_on_q4 = wd6_x_arm * w6_by_4_x_arm
+                - minus_w6_by_4_y_w6_x_w6_z_arm + c5_arm * xx_6_on_q6;
+            let zz_6_on_q5 = w5_x_arm * w6_z_arm;
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+            let minus_xx_6_on_q5 = zz_6_on_q5 + s6_arm * u6_zy_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+            let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
+            let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+            let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
+            let minus_xy_6_on_q6 = t10_arm + u6_yy_minus_u5_yy_arm;
+            let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+                + joint_velocities[5] * w6_x_arm;
+            let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm
+                + w6_by_2_y_arm * u6_zy_arm - w5_by_2_y_arm * minus_xy_6_on_q6;
+            let yy_6_on_q5 = minus_xx_6_on_q5 - u5_xy_arm;
+            let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+            let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
+            let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+            let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
+                - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
+            let yy_6_on_q2 = zz_5_on_q2 + xx_5_on_q2 - xx_6_on_q2;
+            let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
+            let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+            let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
+                - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm
+                + w5_by_2_y_arm * u6_xz_arm;
+            let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
+                - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
+            let minus_v6_by_1_x_arm = t3_arm * minus_w6_by_2_x_arm;
+            let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
+            let v6_by_1_y_arm = t3_arm * w6_by_2_y_arm;
+            let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+            let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
+            let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t6_arm;
+            let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
+            let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
+                - c6_v4_by_3_y_arm * t6_arm;
+            let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
+            let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
+            let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+            let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+            let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
+            ::core::result::Result::Ok([
+                [
+                    joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
+                    ::overact::math::wide::sign(joint_velocities[0]), 1.0,
+                    joint_accelerations[0] + minus_yy_2_on_q1,
+                    c2_arm * u2_zy_arm - s2_arm * u2_zx_arm, xz_2_on_q1, -minus_yy_2_on_q1,
+                    s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+                        - c2_arm * u2_xy_arm,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_3_on_q1,
+                    c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
+                    s23_arm * u3_yx_arm
+                        + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
+                    -minus_yy_3_on_q1,
+                    s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+                        - c23_arm * u3_xy_arm,
+                    0.0,
+                    -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
+                    s23_arm * a3_z_arm - minus_v3_by_1_z_arm * u3_zy_arm,
+                    -(D3 * xz_2_on_q1),
+                    -(minus_v3_by_1_z_arm * a3_z_arm),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_4_on_q1,
+                    -(c23_arm * minus_xy_4_on_q4
+                        + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2)),
+                    w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm
+                        + c23_arm * minus_u4_yz_arm,
+                    xx_3_on_q1 - xx_4_on_q1,
+                    w4_by_1_x_arm * t2_arm - w5_by_1_z_arm * minus_u4_xy_arm
+                        + c23_arm * u4_xz_arm,
+                    zz_4_on_q1,
+                    minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
+                        + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
+                    my_4_on_q1,
+                    u3_zy_arm * t3_arm + s23_arm * t4_arm,
+                    m_4_on_q1,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_5_on_q1,
+                    w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                        + w5_by_1_z_arm * xy_5_on_q5,
+                    w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm
+                        - w5_by_1_z_arm * u5_yz_arm,
+                    zz_4_on_q1 + xx_4_on_q1 - xx_5_on_q1,
+                    w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+                        + w5_by_1_z_arm * u5_xz_arm,
+                    zz_5_on_q1,
+                    minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
+                        + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
+                        - w5_by_1_y_arm * a5_z_arm,
+                    my_5_on_q1,
+                    -my_4_on_q1,
+                    m_4_on_q1,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_6_on_q1,
+                    -(w5_by_1_y_arm * minus_xy_6_on_q6 + w6_by_1_x_arm * u6_zx_arm
+                        + minus_w6_by_1_y_arm * u6_zy_arm),
+                    w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                        + w5_by_1_y_arm * minus_u6_yz_arm,
+                    zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1,
+                    w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                        - minus_w6_by_1_y_arm * minus_u6_xy_arm
+                        + w5_by_1_y_arm * u6_xz_arm,
+                    minus_w6_by_1_y_w6_x_w6_z_arm
+                        - w6_by_1_x_arm * minus_w6_y_w6_z_arm
+                        + w5_by_1_y_arm * wd6_z_arm,
+                    minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
+                        + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
+                        - w5_by_1_y_arm * minus_a6_y_arm,
+                    minus_v6_by_1_x_arm * minus_u6_xy_arm
+                        - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
+                        + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm,
+                    my_5_on_q1,
+                    m_4_on_q1,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_xx_2_on_q2, w2_x_squared_arm - w2_y_squared_arm,
+                    minus_u2_yz_arm, minus_xx_2_on_q2, u2_xz_arm, joint_accelerations[1], a2_y_arm,
+                    -a2_x_arm, joint_accelerations[1], joint_velocities[1],
+                    ::overact::math::wide::sign(joint_velocities[1]), 1.0, -minus_xx_3_on_q2,
+                    xy_3_on_q2, minus_u3_yz_arm, minus_xx_3_on_q2, u3_xz_arm, wd3_z_arm,
+                    v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm
+                        + a3_y_arm,
+                    t1_arm - a3_x_arm,
+                    -(D3 * minus_u2_yz_arm),
+                    D3 * a2_y_plus_d3_u2_yx_arm,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    -minus_xx_4_on_q2,
+                    xy_4_on_q2,
+                    -minus_xz_4_on_q2,
+                    yy_4_on_q2,
+                    -minus_yz_4_on_q2,
+                    zz_4_on_q2,
+                    v3_by_2_y_arm * u4_zx_arm + t5_arm * t6_arm + c4_a4_z_arm,
+                    my_4_on_q2,
+                    t1_arm - minus_mz_4_on_q3,
+                    m_4_on_q2,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_5_on_q2,
+                    xy_5_on_q2,
+                    -minus_xz_5_on_q2,
+                    -minus_yy_5_on_q2,
+                    yz_5_on_q2,
+                    zz_5_on_q2,
+                    v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
+                        - v4_by_3_y_u5_zx_arm * t6_arm
+                        + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                    my_5_on_q2,
+                    -my_4_on_q2,
+                    m_4_on_q2,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_6_on_q2,
+                    xy_6_on_q2,
+                    xz_6_on_q2,
+                    yy_6_on_q2,
+                    yz_6_on_q2,
+                    zz_6_on_q2,
+                    v5_by_2_y_arm * u6_zx_arm
+                        - (v6_by_2_x_arm * minus_u6_xx_arm
+                            + minus_v6_by_2_y_arm * u6_yx_arm) - t11_arm,
+                    minus_v6_by_2_y_arm * minus_u6_yy_arm
+                        - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
+                        - t12_arm,
+                    my_5_on_q2,
+                    m_4_on_q2,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, -minus_xx_3_on_q2, xy_3_on_q2, minus_u3_yz_arm, minus_xx_3_on_q2,
+                    u3_xz_arm, wd3_z_arm, a3_y_arm, -a3_x_arm, 0.0, 0.0, joint_accelerations[2],
+                    joint_velocities[2], ::overact::math::wide::sign(joint_velocities[2]), 1.0,
+                    -minus_xx_4_on_q2, xy_4_on_q2, -minus_xz_4_on_q2, yy_4_on_q2, -minus_yz_4_on_q2,
+                    zz_4_on_q2, t5_arm + c4_a4_z_arm, my_4_on_q3, -minus_mz_4_on_q3,
+                    -minus_m_4_on_q3, 0.0, 0.0, 0.0, 0.0, xx_5_on_q2, xy_5_on_q2, -minus_xz_5_on_q2,
+                    -minus_yy_5_on_q2, yz_5_on_q2, zz_5_on_q2,
+                    minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
+                        - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                    -minus_my_5_on_q3,
+                    -my_4_on_q3,
+                    -minus_m_4_on_q3,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    xx_6_on_q2,
+                    xy_6_on_q2,
+                    xz_6_on_q2,
+                    yy_6_on_q2,
+                    yz_6_on_q2,
+                    zz_6_on_q2,
+                    v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
+                        + v5_by_3_y_arm * u6_zx_arm - t11_arm,
+                    v5_by_3_y_arm * u6_zy_arm
+                        - (v6_by_3_x_arm * minus_u6_xy_arm
+                            + v6_by_3_y_arm * minus_u6_yy_arm) - t12_arm,
+                    -minus_my_5_on_q3,
+                    -minus_m_4_on_q3,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    xx_4_on_q4, -minus_xy_4_on_q4, minus_u4_yz_arm, -xx_4_on_q4, u4_xz_arm,
+                    wd4_z_arm, -a5_z_arm, -a4_x_arm, 0.0, 0.0, joint_accelerations[3],
+                    joint_velocities[3], ::overact::math::wide::sign(joint_velocities[3]), 1.0,
+                    xx_5_on_q4, c5_arm * u5_zy_arm - s5_arm * u5_zx_arm,
+                    s5_arm * u5_yx_arm - c5_arm * t9_arm, yy_5_on_q4,
+                    s5_arm * t8_arm - c5_arm * u5_xy_arm, -minus_zz_5_on_q4, -(c5_arm * a5_z_arm),
+                    my_5_on_q4, a4_x_arm, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q4,
+                    -(c5_arm * minus_xy_6_on_q6
+                        + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5)),
+                    w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                        + c5_arm * minus_u6_yz_arm,
+                    s5_u5_zy_arm - xx_6_on_q4,
+                    w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                        - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
+                    minus_w6_by_4_y_w6_x_w6_z_arm
+                        - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm,
+                    a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
+                    a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
+                    my_5_on_q4,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    -minus_xx_5_on_q5, xy_5_on_q5, -u5_yz_arm, minus_xx_5_on_q5, u5_xz_arm,
+                    wd5_z_arm, a5_y_arm, -a5_x_arm, 0.0, 0.0, joint_accelerations[4],
+                    joint_velocities[4], ::overact::math::wide::sign(joint_velocities[4]), 1.0,
+                    -minus_xx_6_on_q5, s6_arm * u6_zx_arm - c6_arm * u6_zy_arm,
+                    -(s6_arm * u6_yx_arm + c6_arm * t10_arm), yy_6_on_q5,
+                    -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm), zz_6_on_q5,
+                    c6_arm * a5_y_arm, -(s6_arm * a5_y_arm), -a5_x_arm, 0.0, 0.0, 0.0, 0.0, 0.0,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q6,
+                    -minus_xy_6_on_q6, minus_u6_yz_arm, -xx_6_on_q6, u6_xz_arm, wd6_z_arm,
+                    -minus_a6_y_arm, -a6_x_arm, 0.0, 0.0, joint_accelerations[5],
+                    joint_velocities[5], ::overact::math::wide::sign(joint_velocities[5]), 1.0,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -978,379 +1035,411 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-        let a2_y_arm = 9.81 * c2_arm;
-        let a2_x_arm = 9.81 * s2_arm;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
-        let u2_xz_arm = c2_arm * joint_accelerations[0];
-        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
-        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let yy_2_on_q2 = w2_x_arm * w2_y_arm;
-        let u2_yx_arm = yy_2_on_q2 + joint_accelerations[1];
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let w3_x_arm = joint_velocities[0] * s23_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
-        let u3_xz_arm = joint_accelerations[0] * c23_arm;
-        let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
-        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-        let w3_y_arm = joint_velocities[0] * c23_arm;
-        let yy_3_on_q2 = w3_x_arm * w3_y_arm;
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let u2_xy_arm = yy_2_on_q2 - joint_accelerations[1];
-        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
-        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
-            + joint_velocities[2] * w3_y_arm;
-        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
-        let u3_yx_arm = yy_3_on_q2 + wd3_z_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
-        let u3_xy_arm = yy_3_on_q2 - wd3_z_arm;
-        let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let t2_arm = D3 * (s23_arm - c2_arm);
-        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
-        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
-        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
-        let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
-        let t3_arm = 1.0 - s3_arm;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
-        let w4_by_1_x_arm = s23_arm * c4_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-        let zz_4_on_q2 = w3_x_arm * w4_z_arm;
-        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
-        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let minus_xx_4_on_q2 = zz_4_on_q2 + s4_arm * u4_zy_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let t4_arm = w4_z_squared_arm - w4_x_squared_arm;
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let minus_u4_xx_arm = t4_arm + minus_u3_yy_arm;
-        let xy_4_on_q4 = minus_u4_yy_arm - minus_u4_xx_arm;
-        let t5_arm = t4_arm + xy_4_on_q4;
-        let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
-        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
-            + joint_velocities[3] * w4_x_arm;
-        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-        let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
-        let minus_yz_4_on_q2 = minus_c4_u4_xy_arm - s4_arm * t5_arm;
-        let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-        let s4_u4_yx_arm = s4_arm * u4_yx_arm;
-        let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * t4_arm;
-        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
-        let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let a3_z_arm = D3 * u2_zx_arm;
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
-        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
-        let zz_5_on_q2 = c4_arm * wd5_z_arm
-            - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
-        let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
-        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
-            + joint_velocities[4] * w5_y_arm;
-        let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
-        let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm - wd5_x_arm * minus_w5_by_2_x_arm
-            - c4_arm * minus_xx_5_on_q5;
-        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let minus_v4_by_1_x_arm = s4_arm * t2_arm;
-        let v5_by_1_z_arm = c4_arm * t2_arm;
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let t6_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
-        let s4_a4_z_arm = s4_arm * a4_z_arm;
-        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
-            - joint_velocities[4] * w5_x_arm;
-        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let xy_5_on_q5 = w5_x_squared_arm - w5_y_squared_arm;
-        let xy_5_on_q2 = minus_w5_by_2_x_arm * u5_zx_arm + w5_by_2_y_arm * u5_zy_arm
-            + c4_arm * xy_5_on_q5;
-        let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
-        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-        let xz_5_on_q2 = w5_by_2_y_arm * t7_arm - minus_w5_by_2_x_arm * u5_yx_arm
-            - c4_arm * u5_yz_arm;
-        let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
-        let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-        let yz_5_on_q2 = c4_arm * u5_xz_arm
-            - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
-        let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
-            - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let zz_6_on_q5 = w5_x_arm * w6_z_arm;
-        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
-        let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm - wd6_x_arm * minus_w6_by_2_x_arm
-            + w5_by_2_y_arm * xx_6_on_q6;
-        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
-        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm - minus_v5_by_3_x_arm * t3_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t3_arm;
-        let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
-        let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
-            + c4_arm * a5_x_arm;
-        let t9_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
-        let c4_a4_z_arm = c4_arm * a4_z_arm;
-        let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
-        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-        let xz_6_on_q2 = w6_by_2_y_arm * t10_arm - minus_w6_by_2_x_arm * u6_yx_arm
-            + w5_by_2_y_arm * minus_u6_yz_arm;
-        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
-        let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
-            - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm + w5_by_2_y_arm * u6_xz_arm;
-        let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
-        let xy_6_on_q6 = minus_u6_yy_arm - minus_u6_xx_arm;
-        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-        let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm + w6_by_2_y_arm * u6_zy_arm
-            + w5_by_2_y_arm * xy_6_on_q6;
-        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
-        let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
-            - a5_z_arm * w5_by_2_y_arm;
-        let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
-        let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
-        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-        let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t3_arm;
-        let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm - c6_v4_by_3_y_arm * t3_arm;
-        let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
-        let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-        ::core::result::Result::Ok([
-            [
-                joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(c2_arm * u2_zx_arm),
-                s2_arm * u2_yx_arm + c2_arm * (rate_2_squared_arm - w2_x_squared_arm),
-                -(c23_arm * u3_zx_arm),
-                s2_arm * (w2_y_squared_arm - rate_2_squared_arm) - c2_arm * u2_xy_arm,
-                c2_arm * u2_zy_arm - s2_arm * u2_zx_arm, c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
-                s23_arm * u3_yx_arm + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
-                s23_arm * (w3_y_squared_arm - w3_z_squared_arm) - c23_arm * u3_xy_arm,
-                t1_arm * t2_arm,
-                w5_by_1_z_w4_x_w4_z_arm - w4_by_1_x_arm * minus_w4_y_w4_z_arm
-                    + c23_arm * wd4_z_arm,
-                w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
-                    + c23_arm * xx_4_on_q4,
-                c23_arm * u4_xz_arm
-                    - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm),
-                w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm
-                    + c23_arm * minus_u4_yz_arm,
-                c23_arm * xy_4_on_q4
-                    - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm),
-                -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
-                w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
-                    + w5_by_1_z_arm * wd5_z_arm,
-                w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
-                    - w5_by_1_z_arm * minus_xx_5_on_q5,
-                minus_v4_by_1_x_arm * minus_u4_xy_arm + v5_by_1_z_arm * minus_u4_yy_arm
-                    + w4_by_1_x_arm * a4_z_arm - c23_arm * a4_x_arm,
-                w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
-                    + w5_by_1_z_arm * xy_5_on_q5,
-                w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t7_arm
-                    - w5_by_1_z_arm * u5_yz_arm,
-                w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
-                    + w5_by_1_z_arm * u5_xz_arm,
-                minus_w6_by_1_y_w6_x_w6_z_arm - w6_by_1_x_arm * minus_w6_y_w6_z_arm
-                    + w5_by_1_y_arm * wd6_z_arm,
-                w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
-                    + w5_by_1_y_arm * xx_6_on_q6,
-                v5_by_1_z_arm * u5_zy_arm
-                    - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
-                    + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm,
-                minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
-                    + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
-                w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
-                    + w5_by_1_y_arm * minus_u6_yz_arm,
-                w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
-                    - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm,
-                w5_by_1_y_arm * xy_6_on_q6
-                    - (w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm),
-                minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
-                    + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
-                    - w5_by_1_y_arm * a5_z_arm,
-                minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
-                    + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
-                    - w5_by_1_y_arm * minus_a6_y_arm,
-                minus_v6_by_1_x_arm * minus_u6_xy_arm - v6_by_1_y_arm * minus_u6_yy_arm
-                    + v5_by_1_y_arm * u6_zy_arm + w6_by_1_x_arm * a5_y_arm
-                    - w5_by_1_y_arm * a6_x_arm,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, a2_y_arm, -a2_x_arm,
-                yy_2_on_q2, minus_u2_yz_arm, yy_3_on_q2, u2_xz_arm,
-                w2_x_squared_arm - w2_y_squared_arm, xy_3_on_q2, -u3_yz_arm, u3_xz_arm,
-                v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t3_arm, zz_4_on_q2, -minus_xx_4_on_q2,
-                -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2,
-                v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm, zz_5_on_q2,
-                xx_5_on_q2, t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm - s4_a4_z_arm, xy_5_on_q2,
-                xz_5_on_q2, yz_5_on_q2, zz_6_on_q2, xx_6_on_q2,
-                v5_by_2_x_arm * u5_xy_arm - v5_by_2_y_arm * minus_u5_yy_arm
-                    - v4_by_3_y_u5_zy_arm * t3_arm - c4_a5_x_minus_a5_z_w5_by_2_x_arm,
-                v3_by_2_y_arm * u4_zx_arm + t9_arm * t3_arm + c4_a4_z_arm,
-                xz_6_on_q2,
-                yz_6_on_q2,
-                xy_6_on_q2,
-                v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
-                    - v4_by_3_y_u5_zx_arm * t3_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
-                v5_by_2_y_arm * u6_zx_arm
-                    - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
-                    - t11_arm,
-                minus_v6_by_2_y_arm * minus_u6_yy_arm - v6_by_2_x_arm * minus_u6_xy_arm
-                    + v5_by_2_y_arm * u6_zy_arm - t12_arm,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, 0.0, 0.0, 0.0, 0.0, yy_3_on_q2, 0.0, 0.0,
-                xy_3_on_q2, -u3_yz_arm, u3_xz_arm, -minus_m_4_on_q3, zz_4_on_q2, -minus_xx_4_on_q2,
-                -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2, a3_y_arm, zz_5_on_q2, xx_5_on_q2,
-                t6_arm - s4_a4_z_arm, xy_5_on_q2, xz_5_on_q2, yz_5_on_q2, zz_6_on_q2, xx_6_on_q2,
-                -(minus_v5_by_3_x_arm * u5_xy_arm + v5_by_3_y_arm * minus_u5_yy_arm
-                    + v4_by_3_y_u5_zy_arm + c4_a5_x_minus_a5_z_w5_by_2_x_arm),
-                t9_arm + c4_a4_z_arm,
-                xz_6_on_q2,
-                yz_6_on_q2,
-                xy_6_on_q2,
-                minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
-                    - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
-                v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
-                    + v5_by_3_y_arm * u6_zx_arm - t11_arm,
-                v5_by_3_y_arm * u6_zy_arm
-                    - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
-                    - t12_arm,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                wd4_z_arm, xx_4_on_q4, u4_xz_arm, minus_u4_yz_arm, xy_4_on_q4, 0.0,
-                -minus_zz_5_on_q4, minus_zz_5_on_q4 + s5_arm * u5_zy_arm, -a4_x_arm,
-                c5_arm * u5_zy_arm - s5_arm * u5_zx_arm, s5_arm * u5_yx_arm + c5_arm * t7_arm,
-                s5_arm * t8_arm - c5_arm * u5_xy_arm,
-                minus_w6_by_4_y_w6_x_w6_z_arm - w6_by_4_x_arm * minus_w6_y_w6_z_arm
-                    + c5_arm * wd6_z_arm,
-                wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
-                    + c5_arm * xx_6_on_q6,
-                s5_arm * a5_z_arm,
-                -a5_z_arm,
-                w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
-                    + c5_arm * minus_u6_yz_arm,
-                w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
-                    - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
-                c5_arm * xy_6_on_q6
-                    - (w6_by_4_x_arm * u6_zx_arm + minus_w6_by_4_y_arm * u6_zy_arm),
-                -(c5_arm * a5_z_arm),
-                a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
-                a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                wd5_z_arm, -minus_xx_5_on_q5, 0.0, xy_5_on_q5, -u5_yz_arm, u5_xz_arm, zz_6_on_q5,
-                -(zz_6_on_q5 + s6_arm * u6_zy_arm), -a5_x_arm, 0.0,
-                -(s6_arm * u6_yx_arm + c6_arm * t10_arm),
-                -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm),
-                s6_arm * u6_zx_arm - c6_arm * u6_zy_arm, a5_y_arm, c6_arm * a5_y_arm,
-                -(s6_arm * a5_y_arm),
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                wd6_z_arm, xx_6_on_q6, 0.0, 0.0, minus_u6_yz_arm, u6_xz_arm, xy_6_on_q6, 0.0,
-                -minus_a6_y_arm, -a6_x_arm,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+            let a2_y_arm = 9.81 * c2_arm;
+            let a2_x_arm = 9.81 * s2_arm;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+            let u2_xz_arm = c2_arm * joint_accelerations[0];
+            let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+            let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let yy_2_on_q2 = w2_x_arm * w2_y_arm;
+            let u2_yx_arm = yy_2_on_q2 + joint_accelerations[1];
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+            let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
+            let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
+            let w3_x_arm = joint_velocities[0] * s23_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+            let u3_xz_arm = joint_accelerations[0] * c23_arm;
+            let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
+            let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let w3_y_arm = joint_velocities[0] * c23_arm;
+            let yy_3_on_q2 = w3_x_arm * w3_y_arm;
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let u2_xy_arm = yy_2_on_q2 - joint_accelerations[1];
+            let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+            let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+            let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+            let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+            let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+                + joint_velocities[2] * w3_y_arm;
+            let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
+            let u3_yx_arm = yy_3_on_q2 + wd3_z_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+            let u3_xy_arm = yy_3_on_q2 - wd3_z_arm;
+            let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
+            let t2_arm = D3 * (s23_arm - c2_arm);
+            let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+            let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+            let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
+                + s3_arm * a2_y_plus_d3_u2_yx_arm;
+            let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+            let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
+            let t3_arm = 1.0 - s3_arm;
+            let v3_by_2_y_arm = D3 * c3_arm;
+            let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
+                - s3_arm * a2_x_plus_d3_u2_xx_arm;
+            let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+            let w5_by_1_z_arm = s23_arm * s4_arm;
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
+            let w4_by_1_x_arm = s23_arm * c4_arm;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+            let zz_4_on_q2 = w3_x_arm * w4_z_arm;
+            let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
+            let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+            let minus_xx_4_on_q2 = zz_4_on_q2 + s4_arm * u4_zy_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let t4_arm = w4_z_squared_arm - w4_x_squared_arm;
+            let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let minus_u4_xx_arm = t4_arm + minus_u3_yy_arm;
+            let xy_4_on_q4 = minus_u4_yy_arm - minus_u4_xx_arm;
+            let t5_arm = t4_arm + xy_4_on_q4;
+            let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
+            let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+                + joint_velocities[3] * w4_x_arm;
+            let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+            let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
+            let minus_yz_4_on_q2 = minus_c4_u4_xy_arm - s4_arm * t5_arm;
+            let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
+            let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+            let s4_u4_yx_arm = s4_arm * u4_yx_arm;
+            let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * t4_arm;
+            let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
+            let minus_v3_by_1_z_arm = D3 * c2_arm;
+            let a3_z_arm = D3 * u2_zx_arm;
+            let v3_by_2_x_arm = D3 * s3_arm;
+            let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
+            let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+            let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+            let w5_by_2_y_arm = s4_arm * s5_arm;
+            let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
+            let zz_5_on_q2 = c4_arm * wd5_z_arm
+                - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
+            let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
+            let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+                + joint_velocities[4] * w5_y_arm;
+            let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
+            let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm
+                - wd5_x_arm * minus_w5_by_2_x_arm - c4_arm * minus_xx_5_on_q5;
+            let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+            let minus_v4_by_1_x_arm = s4_arm * t2_arm;
+            let v5_by_1_z_arm = c4_arm * t2_arm;
+            let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
+            let v4_by_3_y_arm = D3 * s4_arm;
+            let t6_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
+            let s4_a4_z_arm = s4_arm * a4_z_arm;
+            let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+                - joint_velocities[4] * w5_x_arm;
+            let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let xy_5_on_q5 = w5_x_squared_arm - w5_y_squared_arm;
+            let xy_5_on_q2 = minus_w5_by_2_x_arm * u5_zx_arm
+                + w5_by_2_y_arm * u5_zy_arm + c4_arm * xy_5_on_q5;
+            let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
+            let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+            let xz_5_on_q2 = w5_by_2_y_arm * t7_arm - minus_w5_by_2_x_arm * u5_yx_arm
+                - c4_arm * u5_yz_arm;
+            let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
+            let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
+            let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+            let yz_5_on_q2 = c4_arm * u5_xz_arm
+                - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
+            let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm
+                + w5_by_1_z_arm * c6_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
+            let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+            let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+            let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+            let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
+            let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
+                - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
+            let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+            let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
+            let w6_by_4_x_arm = s5_arm * c6_arm;
+            let zz_6_on_q5 = w5_x_arm * w6_z_arm;
+            let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
+            let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm
+                - wd6_x_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * xx_6_on_q6;
+            let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+            let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+            let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+            let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
+            let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+            let minus_v4_by_3_x_arm = D3 * c4_arm;
+            let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+            let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm
+                - minus_v5_by_3_x_arm * t3_arm;
+            let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+            let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t3_arm;
+            let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
+            let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
+                + c4_arm * a5_x_arm;
+            let t9_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
+            let c4_a4_z_arm = c4_arm * a4_z_arm;
+            let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+            let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
+            let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+            let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
+                - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
+            let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+            let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
+            let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
+            let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+                + joint_velocities[5] * w6_x_arm;
+            let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+            let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
+                - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm
+                + w5_by_2_y_arm * u6_xz_arm;
+            let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
+            let xy_6_on_q6 = minus_u6_yy_arm - minus_u6_xx_arm;
+            let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm
+                + w6_by_2_y_arm * u6_zy_arm + w5_by_2_y_arm * xy_6_on_q6;
+            let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+            let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
+            let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
+                - a5_z_arm * w5_by_2_y_arm;
+            let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
+            let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
+            let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+            let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
+            let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t3_arm;
+            let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
+            let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
+                - c6_v4_by_3_y_arm * t3_arm;
+            let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
+            let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
+            let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+            let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+            let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
+            ::core::result::Result::Ok([
+                [
+                    joint_accelerations[0], joint_velocities[0],
+                    ::overact::math::wide::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, -(c2_arm * u2_zx_arm),
+                    s2_arm * u2_yx_arm
+                        + c2_arm * (rate_2_squared_arm - w2_x_squared_arm),
+                    -(c23_arm * u3_zx_arm),
+                    s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+                        - c2_arm * u2_xy_arm,
+                    c2_arm * u2_zy_arm - s2_arm * u2_zx_arm,
+                    c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
+                    s23_arm * u3_yx_arm
+                        + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
+                    s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+                        - c23_arm * u3_xy_arm,
+                    t1_arm * t2_arm,
+                    w5_by_1_z_w4_x_w4_z_arm - w4_by_1_x_arm * minus_w4_y_w4_z_arm
+                        + c23_arm * wd4_z_arm,
+                    w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+                        + c23_arm * xx_4_on_q4,
+                    c23_arm * u4_xz_arm
+                        - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm),
+                    w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm
+                        + c23_arm * minus_u4_yz_arm,
+                    c23_arm * xy_4_on_q4
+                        - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm),
+                    -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
+                    w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+                        + w5_by_1_z_arm * wd5_z_arm,
+                    w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+                        - w5_by_1_z_arm * minus_xx_5_on_q5,
+                    minus_v4_by_1_x_arm * minus_u4_xy_arm
+                        + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
+                        - c23_arm * a4_x_arm,
+                    w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                        + w5_by_1_z_arm * xy_5_on_q5,
+                    w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t7_arm
+                        - w5_by_1_z_arm * u5_yz_arm,
+                    w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+                        + w5_by_1_z_arm * u5_xz_arm,
+                    minus_w6_by_1_y_w6_x_w6_z_arm
+                        - w6_by_1_x_arm * minus_w6_y_w6_z_arm
+                        + w5_by_1_y_arm * wd6_z_arm,
+                    w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
+                        + w5_by_1_y_arm * xx_6_on_q6,
+                    v5_by_1_z_arm * u5_zy_arm
+                        - (minus_v5_by_1_x_arm * u5_xy_arm
+                            + v5_by_1_y_arm * minus_u5_yy_arm)
+                        + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm,
+                    minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
+                        + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
+                    w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                        + w5_by_1_y_arm * minus_u6_yz_arm,
+                    w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                        - minus_w6_by_1_y_arm * minus_u6_xy_arm
+                        + w5_by_1_y_arm * u6_xz_arm,
+                    w5_by_1_y_arm * xy_6_on_q6
+                        - (w6_by_1_x_arm * u6_zx_arm
+                            + minus_w6_by_1_y_arm * u6_zy_arm),
+                    minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
+                        + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
+                        - w5_by_1_y_arm * a5_z_arm,
+                    minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
+                        + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
+                        - w5_by_1_y_arm * minus_a6_y_arm,
+                    minus_v6_by_1_x_arm * minus_u6_xy_arm
+                        - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
+                        + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
+                    ::overact::math::wide::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, a2_y_arm,
+                    -a2_x_arm, yy_2_on_q2, minus_u2_yz_arm, yy_3_on_q2, u2_xz_arm,
+                    w2_x_squared_arm - w2_y_squared_arm, xy_3_on_q2, -u3_yz_arm, u3_xz_arm,
+                    v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t3_arm, zz_4_on_q2,
+                    -minus_xx_4_on_q2, -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2,
+                    v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm
+                        + a3_y_arm,
+                    zz_5_on_q2,
+                    xx_5_on_q2,
+                    t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm - s4_a4_z_arm,
+                    xy_5_on_q2,
+                    xz_5_on_q2,
+                    yz_5_on_q2,
+                    zz_6_on_q2,
+                    xx_6_on_q2,
+                    v5_by_2_x_arm * u5_xy_arm - v5_by_2_y_arm * minus_u5_yy_arm
+                        - v4_by_3_y_u5_zy_arm * t3_arm
+                        - c4_a5_x_minus_a5_z_w5_by_2_x_arm,
+                    v3_by_2_y_arm * u4_zx_arm + t9_arm * t3_arm + c4_a4_z_arm,
+                    xz_6_on_q2,
+                    yz_6_on_q2,
+                    xy_6_on_q2,
+                    v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
+                        - v4_by_3_y_u5_zx_arm * t3_arm
+                        + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                    v5_by_2_y_arm * u6_zx_arm
+                        - (v6_by_2_x_arm * minus_u6_xx_arm
+                            + minus_v6_by_2_y_arm * u6_yx_arm) - t11_arm,
+                    minus_v6_by_2_y_arm * minus_u6_yy_arm
+                        - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
+                        - t12_arm,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2],
+                    joint_velocities[2], ::overact::math::wide::sign(joint_velocities[2]), 1.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, 0.0, 0.0, 0.0,
+                    0.0, yy_3_on_q2, 0.0, 0.0, xy_3_on_q2, -u3_yz_arm, u3_xz_arm, -minus_m_4_on_q3,
+                    zz_4_on_q2, -minus_xx_4_on_q2, -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2,
+                    a3_y_arm, zz_5_on_q2, xx_5_on_q2, t6_arm - s4_a4_z_arm, xy_5_on_q2, xz_5_on_q2,
+                    yz_5_on_q2, zz_6_on_q2, xx_6_on_q2,
+                    -(minus_v5_by_3_x_arm * u5_xy_arm
+                        + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
+                        + c4_a5_x_minus_a5_z_w5_by_2_x_arm),
+                    t9_arm + c4_a4_z_arm,
+                    xz_6_on_q2,
+                    yz_6_on_q2,
+                    xy_6_on_q2,
+                    minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
+                        - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                    v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
+                        + v5_by_3_y_arm * u6_zx_arm - t11_arm,
+                    v5_by_3_y_arm * u6_zy_arm
+                        - (v6_by_3_x_arm * minus_u6_xy_arm
+                            + v6_by_3_y_arm * minus_u6_yy_arm) - t12_arm,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    joint_accelerations[3], joint_velocities[3],
+                    ::overact::math::wide::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    wd4_z_arm, xx_4_on_q4, u4_xz_arm, minus_u4_yz_arm, xy_4_on_q4, 0.0,
+                    -minus_zz_5_on_q4, minus_zz_5_on_q4 + s5_arm * u5_zy_arm, -a4_x_arm,
+                    c5_arm * u5_zy_arm - s5_arm * u5_zx_arm, s5_arm * u5_yx_arm + c5_arm * t7_arm,
+                    s5_arm * t8_arm - c5_arm * u5_xy_arm,
+                    minus_w6_by_4_y_w6_x_w6_z_arm
+                        - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm,
+                    wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
+                        + c5_arm * xx_6_on_q6,
+                    s5_arm * a5_z_arm,
+                    -a5_z_arm,
+                    w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                        + c5_arm * minus_u6_yz_arm,
+                    w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                        - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
+                    c5_arm * xy_6_on_q6
+                        - (w6_by_4_x_arm * u6_zx_arm
+                            + minus_w6_by_4_y_arm * u6_zy_arm),
+                    -(c5_arm * a5_z_arm),
+                    a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
+                    a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    joint_accelerations[4], joint_velocities[4],
+                    ::overact::math::wide::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, wd5_z_arm, -minus_xx_5_on_q5, 0.0, xy_5_on_q5, -u5_yz_arm, u5_xz_arm,
+                    zz_6_on_q5, -(zz_6_on_q5 + s6_arm * u6_zy_arm), -a5_x_arm, 0.0,
+                    -(s6_arm * u6_yx_arm + c6_arm * t10_arm),
+                    -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm),
+                    s6_arm * u6_zx_arm - c6_arm * u6_zy_arm, a5_y_arm, c6_arm * a5_y_arm,
+                    -(s6_arm * a5_y_arm),
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                    ::overact::math::wide::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                    0.0, 0.0, 0.0, wd6_z_arm, xx_6_on_q6, 0.0, 0.0, minus_u6_yz_arm, u6_xz_arm,
+                    xy_6_on_q6, 0.0, -minus_a6_y_arm, -a6_x_arm,
+                ],
+            ])
+        })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -1399,289 +1488,302 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations), ("parameters", parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let t1_arm = parameters[40] + parameters[54] + parameters[68];
-        let t2_arm = D3 * (parameters[26] + t1_arm);
-        let t3_arm = D3 * t2_arm;
-        let t4_arm = parameters[8] + t3_arm;
-        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
-        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let t5_arm = parameters[5] - t4_arm;
-        let t6_arm = parameters[10] + t3_arm;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
-        let u2_xz_arm = c2_arm * joint_accelerations[0];
-        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
-        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
-        let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
-        let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
-        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t7_arm = wd2_x_arm * t5_arm + qd2_w2_y_arm * t6_arm
-            - parameters[6] * u2_zx_arm + u2_yx_arm * xz_2_minus_d3_mz_3
-            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
-            + joint_velocities[2] * w3_y_arm;
-        let t8_arm = parameters[39] + D3 * t1_arm;
-        let t9_arm = parameters[34] + D3 * (parameters[39] + t8_arm);
-        let t10_arm = parameters[17] + t9_arm - parameters[20];
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let t11_arm = parameters[22] + t9_arm;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
-        let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
-            - joint_velocities[2] * w3_x_arm;
-        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-        let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
-        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-        let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t12_arm = wd3_x_arm * t10_arm + w3_y_w3_z_arm * t11_arm
-            - parameters[18] * u3_zx_arm + parameters[19] * u3_yx_arm
-            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
-        let a3_z_arm = D3 * u2_zx_arm;
-        let t13_arm = t8_arm + parameters[24];
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let t14_arm = parameters[31] + parameters[48] - parameters[34];
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
-            + joint_velocities[3] * w4_x_arm;
-        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
-        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let t15_arm = wd4_x_arm * t14_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-            - parameters[32] * u4_zx_arm + parameters[33] * u4_yx_arm
-            + parameters[35] * (minus_u3_yy_arm - minus_u4_yy_arm);
-        let a2_y_arm = 9.81 * c2_arm;
-        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-        let a2_x_arm = 9.81 * s2_arm;
-        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
-        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-        let my_4_minus_mz_5 = parameters[38] - parameters[53];
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
-            + joint_velocities[4] * w5_y_arm;
-        let t16_arm = parameters[45] + parameters[62] - parameters[48];
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
-            - joint_velocities[4] * w5_x_arm;
-        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t17_arm = wd5_x_arm * t16_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-            - parameters[46] * u5_zx_arm + parameters[47] * u5_yx_arm
-            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
-        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
-        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
-        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let t18_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t18_arm;
-        let my_5_plus_mz_6 = parameters[52] + parameters[67];
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t19_arm = w6_y_squared_arm - w6_z_squared_arm;
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t18_arm;
-        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let moment6_x_arm = wd6_x_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * u6_zx_arm
-            + parameters[61] * u6_yx_arm + parameters[63] * t19_arm
-            + parameters[66] * a5_y_arm;
-        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let minus_u6_yy_arm = minus_u5_yy_arm - t19_arm;
-        let u6_xx_minus_u6_yy_arm = minus_u6_yy_arm - minus_u6_xx_arm;
-        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-            + parameters[60] * u6_zy_arm
-            - parameters[61] * (t19_arm + u6_xx_minus_u6_yy_arm)
-            + parameters[63] * minus_u6_xy_arm - parameters[65] * a5_y_arm;
-        let moment5_x_arm = t17_arm + a5_z_arm * my_5_plus_mz_6 + c6_arm * moment6_x_arm
-            - s6_arm * moment6_y_arm;
-        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
-        let t20_arm = w5_x_w5_z_arm * (t16_arm - zz_5_plus_yy_6)
-            + parameters[46] * u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            - parameters[49] * u5_xy_arm - parameters[51] * a5_z_arm;
-        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let moment6_z_arm = parameters[64] * wd6_z_arm
-            + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-            + parameters[60] * u6_xx_minus_u6_yy_arm + parameters[61] * minus_u6_yz_arm
-            + parameters[63] * u6_xz_arm
-            - (parameters[65] * minus_a6_y_arm + parameters[66] * a6_x_arm);
-        let moment5_y_arm = t20_arm + moment6_z_arm;
-        let moment4_x_arm = t15_arm + a4_z_arm * my_4_minus_mz_5 + c5_arm * moment5_x_arm
-            - s5_arm * moment5_y_arm;
-        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let t21_arm = w4_z_squared_arm - w4_x_squared_arm;
-        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
-        let t22_arm = w4_x_w4_z_arm * (t14_arm - zz_4_plus_yy_5)
-            + parameters[32] * u4_zy_arm + parameters[33] * t21_arm
-            + parameters[35] * minus_u4_xy_arm - parameters[37] * a4_z_arm;
-        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-        let t23_arm = wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t16_arm
-            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[47] * u5_yz_arm + parameters[49] * u5_xz_arm;
-        let moment5_z_arm = t23_arm + parameters[51] * a5_y_arm
-            - a5_x_arm * my_5_plus_mz_6
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t22_arm - moment5_z_arm;
-        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_force6_x_arm = parameters[65] * minus_u6_xx_arm
-            + parameters[66] * minus_u6_xy_arm;
-        let force6_y_arm = parameters[65] * u6_yx_arm - parameters[66] * minus_u6_yy_arm;
-        let force5_x_arm = u5_xy_arm * my_5_plus_mz_6 - parameters[51] * minus_u5_xx_arm
-            - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-        let force6_z_arm = parameters[65] * u6_zx_arm + parameters[66] * u6_zy_arm;
-        let force5_y_arm = parameters[51] * u5_yx_arm - minus_u5_yy_arm * my_5_plus_mz_6
-            + force6_z_arm;
-        let minus_u4_xx_arm = minus_u3_yy_arm + t21_arm;
-        let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
-            - (parameters[37] * minus_u4_xx_arm + minus_u4_xy_arm * my_4_minus_mz_5);
-        let force5_z_arm = parameters[51] * u5_zx_arm + u5_zy_arm * my_5_plus_mz_6
-            - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
-        let force4_y_arm = parameters[37] * u4_yx_arm - minus_u4_yy_arm * my_4_minus_mz_5
-            - force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            + c4_arm * force4_y_arm;
-        let moment3_x_arm = t12_arm + a3_z_arm * t13_arm + c4_arm * moment4_x_arm
-            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let t24_arm = w3_x_w3_z_arm * (t10_arm - t11_arm) + parameters[18] * u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            - parameters[21] * u3_xy_arm - parameters[23] * a3_z_arm;
-        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-        let t25_arm = wd4_z_arm * zz_4_plus_yy_5 + minus_w4_x_w4_y_arm * t14_arm
-            + parameters[32] * (minus_u4_yy_arm - minus_u4_xx_arm)
-            + parameters[33] * minus_u4_yz_arm + parameters[35] * u4_xz_arm;
-        let moment4_z_arm = t25_arm
-            - (parameters[37] * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t24_arm + moment4_z_arm;
-        let moment2_x_arm = t7_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-        let force3_z_arm = parameters[23] * u3_zx_arm + u3_zy_arm * t13_arm
-            - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = qd2_w2_x_arm * (t5_arm - t6_arm) + parameters[6] * u2_zy_arm
-            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-            - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
-            - D3 * force3_z_arm;
-        let force_on_u1_arm = joint_accelerations[0]
-            * (parameters[0] + parameters[20] + t4_arm + parameters[1]) + parameters[4]
-            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
-            + joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0]);
-        let t26_arm = joint_accelerations[1] * t6_arm - w2_x_w2_y_arm * t5_arm
-            + parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + parameters[9] * u2_xz_arm;
-        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            - s4_arm * force4_y_arm;
-        let force3_x_arm = u3_xy_arm * t13_arm - parameters[23] * minus_u3_xx_arm
-            + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = parameters[37] * u4_zx_arm + u4_zy_arm * my_4_minus_mz_5
-            + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
-        let force3_y_arm = parameters[23] * u3_yx_arm - minus_u3_yy_arm * t13_arm
-            + force4_z_arm;
-        let t27_arm = t26_arm + a2_y_arm * (parameters[11] + t2_arm)
-            - parameters[12] * a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
-        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
-        let t28_arm = wd3_z_arm * t11_arm - w3_x_w3_y_arm * t10_arm
-            + parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - parameters[19] * u3_yz_arm + parameters[21] * u3_xz_arm;
-        let moment3_z_arm = t28_arm + parameters[23] * a3_y_arm - a3_x_arm * t13_arm
-            - D3 * c4_force4_x_minus_s4_force4_y_arm
-            - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t27_arm + moment3_z_arm;
-        let tau_2_arm = joint_accelerations[1] * parameters[13]
-            + joint_velocities[1] * parameters[14]
-            + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let tau_3_arm = joint_accelerations[2] * parameters[27]
-            + joint_velocities[2] * parameters[28]
-            + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let tau_4_arm = joint_accelerations[3] * parameters[41]
-            + joint_velocities[3] * parameters[42]
-            + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let tau_5_arm = joint_accelerations[4] * parameters[55]
-            + joint_velocities[4] * parameters[56]
-            + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let tau_6_arm = joint_accelerations[5] * parameters[69]
-            + joint_velocities[5] * parameters[70]
-            + ::overact::math::signed(parameters[71], joint_velocities[5])
-            + parameters[72];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        ::core::result::Result::Ok([
-            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
-            force_on_u6_arm,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let t1_arm = parameters[40] + parameters[54] + parameters[68];
+            let t2_arm = D3 * (parameters[26] + t1_arm);
+            let t3_arm = D3 * t2_arm;
+            let t4_arm = parameters[8] + t3_arm;
+            let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+            let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+            let t5_arm = parameters[5] - t4_arm;
+            let t6_arm = parameters[10] + t3_arm;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+            let u2_xz_arm = c2_arm * joint_accelerations[0];
+            let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+            let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
+            let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let t7_arm = wd2_x_arm * t5_arm + qd2_w2_y_arm * t6_arm
+                - parameters[6] * u2_zx_arm + u2_yx_arm * xz_2_minus_d3_mz_3
+                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+                + joint_velocities[2] * w3_y_arm;
+            let t8_arm = parameters[39] + D3 * t1_arm;
+            let t9_arm = parameters[34] + D3 * (parameters[39] + t8_arm);
+            let t10_arm = parameters[17] + t9_arm - parameters[20];
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+            let t11_arm = parameters[22] + t9_arm;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+            let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
+                - joint_velocities[2] * w3_x_arm;
+            let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
+            let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+            let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let t12_arm = wd3_x_arm * t10_arm + w3_y_w3_z_arm * t11_arm
+                - parameters[18] * u3_zx_arm + parameters[19] * u3_yx_arm
+                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
+            let a3_z_arm = D3 * u2_zx_arm;
+            let t13_arm = t8_arm + parameters[24];
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let t14_arm = parameters[31] + parameters[48] - parameters[34];
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+                + joint_velocities[3] * w4_x_arm;
+            let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let t15_arm = wd4_x_arm * t14_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+                - parameters[32] * u4_zx_arm + parameters[33] * u4_yx_arm
+                + parameters[35] * (minus_u3_yy_arm - minus_u4_yy_arm);
+            let a2_y_arm = 9.81 * c2_arm;
+            let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+            let a2_x_arm = 9.81 * s2_arm;
+            let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+            let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
+                - s3_arm * a2_x_plus_d3_u2_xx_arm;
+            let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+                + joint_velocities[4] * w5_y_arm;
+            let t16_arm = parameters[45] + parameters[62] - parameters[48];
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+                - joint_velocities[4] * w5_x_arm;
+            let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+            let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t17_arm = wd5_x_arm * t16_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+                - parameters[46] * u5_zx_arm + parameters[47] * u5_yx_arm
+                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+            let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
+                + s3_arm * a2_y_plus_d3_u2_yx_arm;
+            let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
+            let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+            let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+            let t18_arm = D3 * (u2_zx_arm + u3_zy_arm);
+            let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t18_arm;
+            let my_5_plus_mz_6 = parameters[52] + parameters[67];
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+                + joint_velocities[5] * w6_x_arm;
+            let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+            let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let t19_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t18_arm;
+            let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+            let moment6_x_arm = wd6_x_arm * xx_6_minus_yy_6
+                - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * u6_zx_arm
+                + parameters[61] * u6_yx_arm + parameters[63] * t19_arm
+                + parameters[66] * a5_y_arm;
+            let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+            let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let minus_u6_yy_arm = minus_u5_yy_arm - t19_arm;
+            let u6_xx_minus_u6_yy_arm = minus_u6_yy_arm - minus_u6_xx_arm;
+            let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+                + parameters[60] * u6_zy_arm
+                - parameters[61] * (t19_arm + u6_xx_minus_u6_yy_arm)
+                + parameters[63] * minus_u6_xy_arm - parameters[65] * a5_y_arm;
+            let moment5_x_arm = t17_arm + a5_z_arm * my_5_plus_mz_6
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+            let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+            let t20_arm = w5_x_w5_z_arm * (t16_arm - zz_5_plus_yy_6)
+                + parameters[46] * u5_zy_arm
+                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+                - parameters[49] * u5_xy_arm - parameters[51] * a5_z_arm;
+            let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+            let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+            let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+            let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+            let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+            let moment6_z_arm = parameters[64] * wd6_z_arm
+                + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+                + parameters[60] * u6_xx_minus_u6_yy_arm
+                + parameters[61] * minus_u6_yz_arm + parameters[63] * u6_xz_arm
+                - (parameters[65] * minus_a6_y_arm + parameters[66] * a6_x_arm);
+            let moment5_y_arm = t20_arm + moment6_z_arm;
+            let moment4_x_arm = t15_arm + a4_z_arm * my_4_minus_mz_5
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+            let t21_arm = w4_z_squared_arm - w4_x_squared_arm;
+            let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+            let t22_arm = w4_x_w4_z_arm * (t14_arm - zz_4_plus_yy_5)
+                + parameters[32] * u4_zy_arm + parameters[33] * t21_arm
+                + parameters[35] * minus_u4_xy_arm - parameters[37] * a4_z_arm;
+            let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+            let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+            let t23_arm = wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t16_arm
+                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+                - parameters[47] * u5_yz_arm + parameters[49] * u5_xz_arm;
+            let moment5_z_arm = t23_arm + parameters[51] * a5_y_arm
+                - a5_x_arm * my_5_plus_mz_6
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t22_arm - moment5_z_arm;
+            let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let minus_force6_x_arm = parameters[65] * minus_u6_xx_arm
+                + parameters[66] * minus_u6_xy_arm;
+            let force6_y_arm = parameters[65] * u6_yx_arm
+                - parameters[66] * minus_u6_yy_arm;
+            let force5_x_arm = u5_xy_arm * my_5_plus_mz_6
+                - parameters[51] * minus_u5_xx_arm
+                - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
+            let force6_z_arm = parameters[65] * u6_zx_arm
+                + parameters[66] * u6_zy_arm;
+            let force5_y_arm = parameters[51] * u5_yx_arm
+                - minus_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
+            let minus_u4_xx_arm = minus_u3_yy_arm + t21_arm;
+            let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
+                - (parameters[37] * minus_u4_xx_arm
+                    + minus_u4_xy_arm * my_4_minus_mz_5);
+            let force5_z_arm = parameters[51] * u5_zx_arm
+                + u5_zy_arm * my_5_plus_mz_6
+                - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
+            let force4_y_arm = parameters[37] * u4_yx_arm
+                - minus_u4_yy_arm * my_4_minus_mz_5 - force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                + c4_arm * force4_y_arm;
+            let moment3_x_arm = t12_arm + a3_z_arm * t13_arm + c4_arm * moment4_x_arm
+                - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let t24_arm = w3_x_w3_z_arm * (t10_arm - t11_arm)
+                + parameters[18] * u3_zy_arm
+                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+                - parameters[21] * u3_xy_arm - parameters[23] * a3_z_arm;
+            let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+            let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+            let t25_arm = wd4_z_arm * zz_4_plus_yy_5 + minus_w4_x_w4_y_arm * t14_arm
+                + parameters[32] * (minus_u4_yy_arm - minus_u4_xx_arm)
+                + parameters[33] * minus_u4_yz_arm + parameters[35] * u4_xz_arm;
+            let moment4_z_arm = t25_arm
+                - (parameters[37] * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t24_arm + moment4_z_arm;
+            let moment2_x_arm = t7_arm + c3_arm * moment3_x_arm
+                - s3_arm * moment3_y_arm;
+            let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
+            let force3_z_arm = parameters[23] * u3_zx_arm + u3_zy_arm * t13_arm
+                - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = qd2_w2_x_arm * (t5_arm - t6_arm)
+                + parameters[6] * u2_zy_arm
+                + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+                - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let force_on_u1_arm = joint_accelerations[0]
+                * (parameters[0] + parameters[20] + t4_arm + parameters[1])
+                + parameters[4] + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
+                + joint_velocities[0] * parameters[2]
+                + ::overact::math::wide::signed(parameters[3], joint_velocities[0]);
+            let t26_arm = joint_accelerations[1] * t6_arm - w2_x_w2_y_arm * t5_arm
+                + parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+                + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + parameters[9] * u2_xz_arm;
+            let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                - s4_arm * force4_y_arm;
+            let force3_x_arm = u3_xy_arm * t13_arm - parameters[23] * minus_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = parameters[37] * u4_zx_arm
+                + u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = parameters[23] * u3_yx_arm - minus_u3_yy_arm * t13_arm
+                + force4_z_arm;
+            let t27_arm = t26_arm + a2_y_arm * (parameters[11] + t2_arm)
+                - parameters[12] * a2_x_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+            let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+            let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
+            let t28_arm = wd3_z_arm * t11_arm - w3_x_w3_y_arm * t10_arm
+                + parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+                - parameters[19] * u3_yz_arm + parameters[21] * u3_xz_arm;
+            let moment3_z_arm = t28_arm + parameters[23] * a3_y_arm
+                - a3_x_arm * t13_arm - D3 * c4_force4_x_minus_s4_force4_y_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t27_arm + moment3_z_arm;
+            let tau_2_arm = joint_accelerations[1] * parameters[13]
+                + joint_velocities[1] * parameters[14]
+                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
+                + parameters[16];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let tau_3_arm = joint_accelerations[2] * parameters[27]
+                + joint_velocities[2] * parameters[28]
+                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
+                + parameters[30];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let tau_4_arm = joint_accelerations[3] * parameters[41]
+                + joint_velocities[3] * parameters[42]
+                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
+                + parameters[44];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let tau_5_arm = joint_accelerations[4] * parameters[55]
+                + joint_velocities[4] * parameters[56]
+                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
+                + parameters[58];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let tau_6_arm = joint_accelerations[5] * parameters[69]
+                + joint_velocities[5] * parameters[70]
+                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
+                + parameters[72];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            ::core::result::Result::Ok([
+                force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+                force_on_u6_arm,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -1709,292 +1811,319 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations), ("base_parameters", base_parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let d3_m_4R = D3 * base_parameters[35];
-        let d3_d3_m_4R = D3 * d3_m_4R;
-        let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
-        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
-        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
-        let u2_xz_arm = c2_arm * joint_accelerations[0];
-        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
-        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
-        let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
-        let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1_arm = qd2_w2_y_arm * zz_2R_plus_d3_d3_m_4R
-            - wd2_x_arm * yy_2R_plus_d3_d3_m_4R - base_parameters[31] * u2_zx_arm
-            + base_parameters[28] * u2_yx_arm
-            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
-            + joint_velocities[2] * w3_y_arm;
-        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
-        let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
-            - joint_velocities[2] * w3_x_arm;
-        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-        let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
-        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-        let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t2_arm = wd3_x_arm * d3_d3_m_4R_minus_yy_3R
-            + w3_y_w3_z_arm * zz_3R_plus_d3_d3_m_4R - base_parameters[32] * u3_zx_arm
-            + base_parameters[33] * u3_yx_arm
-            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
-            + joint_velocities[3] * w4_x_arm;
-        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
-        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let t3_arm = base_parameters[37] * wd4_x_arm
-            - base_parameters[36] * minus_w4_y_w4_z_arm - base_parameters[40] * u4_zx_arm
-            + base_parameters[39] * u4_yx_arm
-            + base_parameters[38] * (minus_u3_yy_arm - minus_u4_yy_arm);
-        let a2_y_arm = 9.81 * c2_arm;
-        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-        let a2_x_arm = 9.81 * s2_arm;
-        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
-        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
-            + joint_velocities[4] * w5_y_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
-            - joint_velocities[4] * w5_x_arm;
-        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let t4_arm = base_parameters[43] * wd5_x_arm
-            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * u5_zx_arm
-            + base_parameters[46] * u5_yx_arm
-            + base_parameters[47] * (minus_u4_yy_arm - minus_u5_yy_arm);
-        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
-        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
-        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
-        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let t5_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t5_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t6_arm = w6_y_squared_arm - w6_z_squared_arm;
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t5_arm;
-        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let moment6_x_arm = base_parameters[49] * wd6_x_arm
-            - base_parameters[48] * minus_w6_y_w6_z_arm - base_parameters[54] * u6_zx_arm
-            + base_parameters[52] * u6_yx_arm + base_parameters[53] * t6_arm
-            + base_parameters[57] * a5_y_arm;
-        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
-            + base_parameters[54] * u6_zy_arm
-            + base_parameters[52] * (minus_u6_xx_arm - minus_u5_yy_arm)
-            + base_parameters[53] * minus_u6_xy_arm - base_parameters[56] * a5_y_arm;
-        let moment5_x_arm = t4_arm + base_parameters[50] * a5_z_arm
-            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
-        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
-        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
-        let t8_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-            + base_parameters[45] * u5_zy_arm + base_parameters[46] * t7_arm
-            - base_parameters[47] * u5_xy_arm - base_parameters[55] * a5_z_arm;
-        let minus_u6_yy_arm = minus_u5_yy_arm - t6_arm;
-        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let t9_arm = base_parameters[48] * wd6_z_arm
-            + base_parameters[49] * minus_w6_x_w6_y_arm
-            + base_parameters[54] * (minus_u6_yy_arm - minus_u6_xx_arm)
-            + base_parameters[52] * minus_u6_yz_arm + base_parameters[53] * u6_xz_arm;
-        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let moment6_z_arm = t9_arm
-            - (base_parameters[56] * minus_a6_y_arm + base_parameters[57] * a6_x_arm);
-        let moment5_y_arm = t8_arm + moment6_z_arm;
-        let moment4_x_arm = t3_arm + base_parameters[44] * a4_z_arm
-            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
-        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let t10_arm = w4_z_squared_arm - w4_x_squared_arm;
-        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
-        let t11_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-            + base_parameters[40] * u4_zy_arm + base_parameters[39] * t10_arm
-            + base_parameters[38] * minus_u4_xy_arm - base_parameters[51] * a4_z_arm;
-        let minus_u5_xx_arm = t7_arm + minus_u4_yy_arm;
-        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-        let t12_arm = base_parameters[42] * wd5_z_arm
-            - base_parameters[43] * w5_x_w5_y_arm
-            + base_parameters[45] * (minus_u5_yy_arm - minus_u5_xx_arm)
-            - base_parameters[46] * u5_yz_arm + base_parameters[47] * u5_xz_arm;
-        let moment5_z_arm = t12_arm + base_parameters[55] * a5_y_arm
-            - base_parameters[50] * a5_x_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t11_arm - moment5_z_arm;
-        let minus_force6_x_arm = base_parameters[56] * minus_u6_xx_arm
-            + base_parameters[57] * minus_u6_xy_arm;
-        let force6_y_arm = base_parameters[56] * u6_yx_arm
-            - base_parameters[57] * minus_u6_yy_arm;
-        let force5_x_arm = base_parameters[50] * u5_xy_arm
-            - base_parameters[55] * minus_u5_xx_arm
-            - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-        let force6_z_arm = base_parameters[56] * u6_zx_arm
-            + base_parameters[57] * u6_zy_arm;
-        let force5_y_arm = base_parameters[55] * u5_yx_arm
-            - base_parameters[50] * minus_u5_yy_arm + force6_z_arm;
-        let minus_u4_xx_arm = minus_u3_yy_arm + t10_arm;
-        let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
-            - (base_parameters[51] * minus_u4_xx_arm
-                + base_parameters[44] * minus_u4_xy_arm);
-        let force5_z_arm = base_parameters[55] * u5_zx_arm
-            + base_parameters[50] * u5_zy_arm
-            - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
-        let force4_y_arm = base_parameters[51] * u4_yx_arm
-            - base_parameters[44] * minus_u4_yy_arm - force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            + c4_arm * force4_y_arm;
-        let moment3_x_arm = t2_arm + d3_d3_m_4R * u2_zx_arm + c4_arm * moment4_x_arm
-            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let a3_z_arm = D3 * u2_zx_arm;
-        let t13_arm = w3_x_w3_z_arm * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-            + base_parameters[32] * u3_zy_arm
-            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-            - base_parameters[34] * u3_xy_arm - base_parameters[41] * a3_z_arm;
-        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-        let t14_arm = base_parameters[36] * wd4_z_arm
-            + base_parameters[37] * minus_w4_x_w4_y_arm
-            + base_parameters[40] * (minus_u4_yy_arm - minus_u4_xx_arm)
-            + base_parameters[39] * minus_u4_yz_arm + base_parameters[38] * u4_xz_arm;
-        let moment4_z_arm = t14_arm
-            - (base_parameters[51] * a5_z_arm + base_parameters[44] * a4_x_arm)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t13_arm + moment4_z_arm;
-        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-        let force3_z_arm = base_parameters[41] * u3_zx_arm + u3_zy_arm * d3_m_4R
-            - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = base_parameters[31] * u2_zy_arm
-            - qd2_w2_x_arm * (yy_2R_plus_d3_d3_m_4R + zz_2R_plus_d3_d3_m_4R)
-            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-            - base_parameters[30] * u2_xy_arm + s3_arm * moment3_x_arm
-            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
-        let moment1_z_arm = joint_accelerations[0]
-            * (base_parameters[0] + base_parameters[29] + yy_2R_plus_d3_d3_m_4R)
-            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_d3_m_4R
-            + w2_x_w2_y_arm * yy_2R_plus_d3_d3_m_4R
-            + base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-            + base_parameters[28] * minus_u2_yz_arm + base_parameters[30] * u2_xz_arm;
-        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            - s4_arm * force4_y_arm;
-        let force3_x_arm = u3_xy_arm * d3_m_4R - base_parameters[41] * minus_u3_xx_arm
-            + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = base_parameters[51] * u4_zx_arm
-            + base_parameters[44] * u4_zy_arm + s5_arm * force5_x_arm
-            + c5_arm * force5_y_arm;
-        let force3_y_arm = base_parameters[41] * u3_yx_arm - minus_u3_yy_arm * d3_m_4R
-            + force4_z_arm;
-        let t16_arm = t15_arm + a2_y_arm * (base_parameters[25] + d3_m_4R)
-            - base_parameters[26] * a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
-        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
-        let t17_arm = wd3_z_arm * zz_3R_plus_d3_d3_m_4R
-            - w3_x_w3_y_arm * d3_d3_m_4R_minus_yy_3R
-            + base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-            - base_parameters[33] * u3_yz_arm + base_parameters[34] * u3_xz_arm;
-        let moment3_z_arm = t17_arm + base_parameters[41] * a3_y_arm - a3_x_arm * d3_m_4R
-            - D3 * c4_force4_x_minus_s4_force4_y_arm
-            - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t16_arm + moment3_z_arm;
-        let tau_2_arm = joint_velocities[1] * base_parameters[5]
-            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
-            + base_parameters[7];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let tau_3_arm = joint_accelerations[2] * base_parameters[8]
-            + joint_velocities[2] * base_parameters[9]
-            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
-            + base_parameters[11];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let tau_4_arm = joint_accelerations[3] * base_parameters[12]
-            + joint_velocities[3] * base_parameters[13]
-            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
-            + base_parameters[15];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let tau_5_arm = joint_accelerations[4] * base_parameters[16]
-            + joint_velocities[4] * base_parameters[17]
-            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
-            + base_parameters[19];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let tau_6_arm = joint_accelerations[5] * base_parameters[20]
-            + joint_velocities[5] * base_parameters[21]
-            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
-            + base_parameters[23];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        ::core::result::Result::Ok([
-            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
-            force_on_u6_arm,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let d3_m_4R = D3 * base_parameters[35];
+            let d3_d3_m_4R = D3 * d3_m_4R;
+            let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
+            let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+            let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+            let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+            let u2_xz_arm = c2_arm * joint_accelerations[0];
+            let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+            let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
+            let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let t1_arm = qd2_w2_y_arm * zz_2R_plus_d3_d3_m_4R
+                - wd2_x_arm * yy_2R_plus_d3_d3_m_4R - base_parameters[31] * u2_zx_arm
+                + base_parameters[28] * u2_yx_arm
+                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+                + joint_velocities[2] * w3_y_arm;
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+            let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
+                - joint_velocities[2] * w3_x_arm;
+            let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
+            let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+            let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let t2_arm = wd3_x_arm * d3_d3_m_4R_minus_yy_3R
+                + w3_y_w3_z_arm * zz_3R_plus_d3_d3_m_4R
+                - base_parameters[32] * u3_zx_arm + base_parameters[33] * u3_yx_arm
+                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+                + joint_velocities[3] * w4_x_arm;
+            let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let t3_arm = base_parameters[37] * wd4_x_arm
+                - base_parameters[36] * minus_w4_y_w4_z_arm
+                - base_parameters[40] * u4_zx_arm + base_parameters[39] * u4_yx_arm
+                + base_parameters[38] * (minus_u3_yy_arm - minus_u4_yy_arm);
+            let a2_y_arm = 9.81 * c2_arm;
+            let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+            let a2_x_arm = 9.81 * s2_arm;
+            let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+            let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
+                - s3_arm * a2_x_plus_d3_u2_xx_arm;
+            let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+                + joint_velocities[4] * w5_y_arm;
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+                - joint_velocities[4] * w5_x_arm;
+            let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+            let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let t4_arm = base_parameters[43] * wd5_x_arm
+                + base_parameters[42] * w5_y_w5_z_arm
+                - base_parameters[45] * u5_zx_arm + base_parameters[46] * u5_yx_arm
+                + base_parameters[47] * (minus_u4_yy_arm - minus_u5_yy_arm);
+            let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
+                + s3_arm * a2_y_plus_d3_u2_yx_arm;
+            let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
+            let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+            let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+            let t5_arm = D3 * (u2_zx_arm + u3_zy_arm);
+            let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t5_arm;
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+                + joint_velocities[5] * w6_x_arm;
+            let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+            let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let t6_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t5_arm;
+            let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+            let moment6_x_arm = base_parameters[49] * wd6_x_arm
+                - base_parameters[48] * minus_w6_y_w6_z_arm
+                - base_parameters[54] * u6_zx_arm + base_parameters[52] * u6_yx_arm
+                + base_parameters[53] * t6_arm + base_parameters[57] * a5_y_arm;
+            let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+            let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+            let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
+            let moment6_y_arm = w6_x_w6_z_arm
+                * (base_parameters[49] - base_parameters[48])
+                + base_parameters[54] * u6_zy_arm
+                + base_parameters[52] * (minus_u6_xx_arm - minus_u5_yy_arm)
+                + base_parameters[53] * minus_u6_xy_arm
+                - base_parameters[56] * a5_y_arm;
+            let moment5_x_arm = t4_arm + base_parameters[50] * a5_z_arm
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+            let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
+            let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+            let t8_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+                + base_parameters[45] * u5_zy_arm + base_parameters[46] * t7_arm
+                - base_parameters[47] * u5_xy_arm - base_parameters[55] * a5_z_arm;
+            let minus_u6_yy_arm = minus_u5_yy_arm - t6_arm;
+            let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+            let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+            let t9_arm = base_parameters[48] * wd6_z_arm
+                + base_parameters[49] * minus_w6_x_w6_y_arm
+                + base_parameters[54] * (minus_u6_yy_arm - minus_u6_xx_arm)
+                + base_parameters[52] * minus_u6_yz_arm
+                + base_parameters[53] * u6_xz_arm;
+            let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+            let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+            let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+            let moment6_z_arm = t9_arm
+                - (base_parameters[56] * minus_a6_y_arm
+                    + base_parameters[57] * a6_x_arm);
+            let moment5_y_arm = t8_arm + moment6_z_arm;
+            let moment4_x_arm = t3_arm + base_parameters[44] * a4_z_arm
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+            let t10_arm = w4_z_squared_arm - w4_x_squared_arm;
+            let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+            let t11_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+                + base_parameters[40] * u4_zy_arm + base_parameters[39] * t10_arm
+                + base_parameters[38] * minus_u4_xy_arm
+                - base_parameters[51] * a4_z_arm;
+            let minus_u5_xx_arm = t7_arm + minus_u4_yy_arm;
+            let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+            let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+            let t12_arm = base_parameters[42] * wd5_z_arm
+                - base_parameters[43] * w5_x_w5_y_arm
+                + base_parameters[45] * (minus_u5_yy_arm - minus_u5_xx_arm)
+                - base_parameters[46] * u5_yz_arm + base_parameters[47] * u5_xz_arm;
+            let moment5_z_arm = t12_arm + base_parameters[55] * a5_y_arm
+                - base_parameters[50] * a5_x_arm
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t11_arm - moment5_z_arm;
+            let minus_force6_x_arm = base_parameters[56] * minus_u6_xx_arm
+                + base_parameters[57] * minus_u6_xy_arm;
+            let force6_y_arm = base_parameters[56] * u6_yx_arm
+                - base_parameters[57] * minus_u6_yy_arm;
+            let force5_x_arm = base_parameters[50] * u5_xy_arm
+                - base_parameters[55] * minus_u5_xx_arm
+                - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
+            let force6_z_arm = base_parameters[56] * u6_zx_arm
+                + base_parameters[57] * u6_zy_arm;
+            let force5_y_arm = base_parameters[55] * u5_yx_arm
+                - base_parameters[50] * minus_u5_yy_arm + force6_z_arm;
+            let minus_u4_xx_arm = minus_u3_yy_arm + t10_arm;
+            let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
+                - (base_parameters[51] * minus_u4_xx_arm
+                    + base_parameters[44] * minus_u4_xy_arm);
+            let force5_z_arm = base_parameters[55] * u5_zx_arm
+                + base_parameters[50] * u5_zy_arm
+                - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
+            let force4_y_arm = base_parameters[51] * u4_yx_arm
+                - base_parameters[44] * minus_u4_yy_arm - force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                + c4_arm * force4_y_arm;
+            let moment3_x_arm = t2_arm + d3_d3_m_4R * u2_zx_arm
+                + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+                - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let a3_z_arm = D3 * u2_zx_arm;
+            let t13_arm = w3_x_w3_z_arm
+                * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
+                + base_parameters[32] * u3_zy_arm
+                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+                - base_parameters[34] * u3_xy_arm - base_parameters[41] * a3_z_arm;
+            let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+            let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+            let t14_arm = base_parameters[36] * wd4_z_arm
+                + base_parameters[37] * minus_w4_x_w4_y_arm
+                + base_parameters[40] * (minus_u4_yy_arm - minus_u4_xx_arm)
+                + base_parameters[39] * minus_u4_yz_arm
+                + base_parameters[38] * u4_xz_arm;
+            let moment4_z_arm = t14_arm
+                - (base_parameters[51] * a5_z_arm + base_parameters[44] * a4_x_arm)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t13_arm + moment4_z_arm;
+            let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm
+                - s3_arm * moment3_y_arm;
+            let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
+            let force3_z_arm = base_parameters[41] * u3_zx_arm + u3_zy_arm * d3_m_4R
+                - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = base_parameters[31] * u2_zy_arm
+                - qd2_w2_x_arm * (yy_2R_plus_d3_d3_m_4R + zz_2R_plus_d3_d3_m_4R)
+                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+                - base_parameters[30] * u2_xy_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let moment1_z_arm = joint_accelerations[0]
+                * (base_parameters[0] + base_parameters[29] + yy_2R_plus_d3_d3_m_4R)
+                + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+            let tau_1_arm = joint_velocities[0] * base_parameters[1]
+                + ::overact::math::wide::signed(
+                    base_parameters[2],
+                    joint_velocities[0],
+                ) + base_parameters[3];
+            let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_d3_m_4R
+                + w2_x_w2_y_arm * yy_2R_plus_d3_d3_m_4R
+                + base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+                + base_parameters[28] * minus_u2_yz_arm
+                + base_parameters[30] * u2_xz_arm;
+            let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                - s4_arm * force4_y_arm;
+            let force3_x_arm = u3_xy_arm * d3_m_4R
+                - base_parameters[41] * minus_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = base_parameters[51] * u4_zx_arm
+                + base_parameters[44] * u4_zy_arm + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = base_parameters[41] * u3_yx_arm
+                - minus_u3_yy_arm * d3_m_4R + force4_z_arm;
+            let t16_arm = t15_arm + a2_y_arm * (base_parameters[25] + d3_m_4R)
+                - base_parameters[26] * a2_x_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+            let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+            let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
+            let t17_arm = wd3_z_arm * zz_3R_plus_d3_d3_m_4R
+                - w3_x_w3_y_arm * d3_d3_m_4R_minus_yy_3R
+                + base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+                - base_parameters[33] * u3_yz_arm + base_parameters[34] * u3_xz_arm;
+            let moment3_z_arm = t17_arm + base_parameters[41] * a3_y_arm
+                - a3_x_arm * d3_m_4R - D3 * c4_force4_x_minus_s4_force4_y_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t16_arm + moment3_z_arm;
+            let tau_2_arm = joint_velocities[1] * base_parameters[5]
+                + ::overact::math::wide::signed(
+                    base_parameters[6],
+                    joint_velocities[1],
+                ) + base_parameters[7];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let tau_3_arm = joint_accelerations[2] * base_parameters[8]
+                + joint_velocities[2] * base_parameters[9]
+                + ::overact::math::wide::signed(
+                    base_parameters[10],
+                    joint_velocities[2],
+                ) + base_parameters[11];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let tau_4_arm = joint_accelerations[3] * base_parameters[12]
+                + joint_velocities[3] * base_parameters[13]
+                + ::overact::math::wide::signed(
+                    base_parameters[14],
+                    joint_velocities[3],
+                ) + base_parameters[15];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let tau_5_arm = joint_accelerations[4] * base_parameters[16]
+                + joint_velocities[4] * base_parameters[17]
+                + ::overact::math::wide::signed(
+                    base_parameters[18],
+                    joint_velocities[4],
+                ) + base_parameters[19];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let tau_6_arm = joint_accelerations[5] * base_parameters[20]
+                + joint_velocities[5] * base_parameters[21]
+                + ::overact::math::wide::signed(
+                    base_parameters[22],
+                    joint_velocities[5],
+                ) + base_parameters[23];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            ::core::result::Result::Ok([
+                force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+                force_on_u6_arm,
+            ])
+        })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -2013,171 +2142,194 @@ impl Rx90 {
         parameters: &[::core::primitive::f64; 73],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
         ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-        (s2_arm, c2_arm)] = ::overact::math::sin_cos_all([
-            joints[4], joints[5], joints[2], joints[3], joints[1],
-        ]);
-        // --- arm
-        let inertia5_yy_arm = parameters[48] + parameters[64];
-        let t1_arm = s6_arm * (parameters[59] - parameters[62])
-            + c6_arm * (2.0 * parameters[60]);
-        let t2_arm = s6_arm * t1_arm;
-        let inertia5_xx_arm = parameters[45] + parameters[59] - t2_arm;
-        let moment5_x_by_6_arm = c6_arm * parameters[61] - s6_arm * parameters[63];
-        let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
-        let t3_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
-            + c5_arm * (2.0 * inertia5_xy_arm);
-        let t4_arm = s5_arm * t3_arm;
-        let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t4_arm;
-        let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
-        let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t4_arm;
-        let inertia5_zz_arm = parameters[50] + parameters[62] + t2_arm;
-        let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
-        let inertia5_xz_arm = parameters[47] - (c6_arm * t1_arm - parameters[60]);
-        let minus_moment5_z_by_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
-        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
-        let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
-        let t5_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
-            + c4_arm * (2.0 * inertia4_xy_arm);
-        let t6_arm = s4_arm * t5_arm;
-        let minus_force5_z_by_6_arm = c6_arm * parameters[65] - s6_arm * parameters[66];
-        let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
-        let first5_y_arm = parameters[52] + parameters[67];
-        let minus_force4_x_by_5_arm = s5_arm * first5_x_arm + c5_arm * first5_y_arm;
-        let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
-        let mass5_arm = parameters[54] + parameters[68];
-        let mass4_arm = parameters[40] + mass5_arm;
-        let first4_z_plus_d3_mass4_arm = first4_z_arm + D3 * mass4_arm;
-        let t7_arm = D3 * (first4_z_arm + first4_z_plus_d3_mass4_arm);
-        let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t6_arm + t7_arm;
-        let inertia4_xz_arm = parameters[33] + c5_arm * t3_arm - inertia5_xy_arm;
-        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
-        let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
-        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
-        let first4_x_arm = parameters[37] + force4_z_by_5_arm;
-        let minus_force5_x_by_6_arm = s6_arm * parameters[65] + c6_arm * parameters[66];
-        let first5_z_arm = parameters[53] - minus_force5_x_by_6_arm;
-        let first4_y_arm = parameters[38] - first5_z_arm;
-        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
-        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
-        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
-            - minus_d3_force3_z_by_4_arm;
-        let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
-        let t8_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
-            + c3_arm * (2.0 * inertia3_xy_arm);
-        let t9_arm = s3_arm * t8_arm;
-        let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
-        let first3_y_arm = first4_z_plus_d3_mass4_arm + parameters[24];
-        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let mass3_arm = parameters[26] + mass4_arm;
-        let t10_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + D3 * mass3_arm);
-        let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t9_arm + t10_arm;
-        let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t9_arm;
-        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
-        let inertia2_xy_arm = parameters[6] + c3_arm * t8_arm - inertia3_xy_arm
-            - D3 * minus_force2_x_by_3_arm;
-        let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
-            + s2_arm
-                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
-                    + c2_arm * (2.0 * inertia2_xy_arm));
-        let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
-        let inertia3_xz_arm = parameters[19] - (c4_arm * t5_arm - inertia4_xy_arm);
-        let minus_force3_x_by_4_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
-        let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
-        let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
-            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-        let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
-        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
-        let first3_z_arm = parameters[25] - minus_force3_x_by_4_arm;
-        let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm - D3 * first3_z_arm;
-        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
-        let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
-        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
-        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
-            + c2_arm * moment2_y_by_3_arm;
-        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
-        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
-            + minus_d3_force3_z_by_4_arm;
-        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
-            + c2_arm * moment2_y_by_4_arm;
-        let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
-        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
-        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
-            + d3_force3_z_by_5_arm;
-        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
-            - s3_arm * moment4_z_by_5_arm;
-        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
-            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
-        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
-            + c2_arm * moment2_y_by_5_arm;
-        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * parameters[64];
-        let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
-        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
-            - s4_arm * minus_force4_x_by_6_arm;
-        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
-        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
-            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * parameters[64];
-        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
-            - s3_arm * moment4_z_by_6_arm;
-        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
-            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
-        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
-            + c2_arm * moment2_y_by_6_arm;
-        let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t6_arm + t7_arm;
-        let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t10_arm;
-        let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
-        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
-        let moment2_z_by_4_arm = moment3_z_by_4_arm
-            - s3_arm * minus_d3_force3_x_by_4_arm;
-        let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
-        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
-            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
-        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
-            - s3_arm * minus_force3_x_by_5_arm;
-        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
-        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
-            + s4_arm * minus_force5_z_by_6_arm;
-        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
-            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
-        let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
-        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
-            + c3_arm * minus_force4_z_by_6_arm;
-        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
-        let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
-        let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
-        let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
-        let masses_arm_6_6 = parameters[64] + parameters[69];
-        ::core::result::Result::Ok([
-            [
-                masses_arm_1_1, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
-                moment1_z_by_5_arm, moment1_z_by_6_arm,
-            ],
-            [
-                minus_inertia1_yz_arm, masses_arm_2_2, moment2_z_by_3_arm, moment2_z_by_4_arm,
-                moment2_z_by_5_arm, moment2_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
-                moment3_z_by_5_arm, moment3_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
-                moment4_z_by_5_arm, moment4_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
-                masses_arm_5_5, -minus_moment5_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
-                -minus_moment5_z_by_6_arm, masses_arm_6_6,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm),
+            (s4_arm, c4_arm), (s2_arm, c2_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[4], joints[5], joints[2], joints[3], joints[1],
+            ]);
+            // --- arm
+            let inertia5_yy_arm = parameters[48] + parameters[64];
+            let t1_arm = s6_arm * (parameters[59] - parameters[62])
+                + c6_arm * (2.0 * parameters[60]);
+            let t2_arm = s6_arm * t1_arm;
+            let inertia5_xx_arm = parameters[45] + parameters[59] - t2_arm;
+            let moment5_x_by_6_arm = c6_arm * parameters[61]
+                - s6_arm * parameters[63];
+            let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+            let t3_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
+                + c5_arm * (2.0 * inertia5_xy_arm);
+            let t4_arm = s5_arm * t3_arm;
+            let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t4_arm;
+            let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
+            let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t4_arm;
+            let inertia5_zz_arm = parameters[50] + parameters[62] + t2_arm;
+            let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
+            let inertia5_xz_arm = parameters[47]
+                - (c6_arm * t1_arm - parameters[60]);
+            let minus_moment5_z_by_6_arm = s6_arm * parameters[61]
+                + c6_arm * parameters[63];
+            let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+            let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
+                - s5_arm * inertia5_yz_arm;
+            let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+            let t5_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
+                + c4_arm * (2.0 * inertia4_xy_arm);
+            let t6_arm = s4_arm * t5_arm;
+            let minus_force5_z_by_6_arm = c6_arm * parameters[65]
+                - s6_arm * parameters[66];
+            let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
+            let first5_y_arm = parameters[52] + parameters[67];
+            let minus_force4_x_by_5_arm = s5_arm * first5_x_arm
+                + c5_arm * first5_y_arm;
+            let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
+            let mass5_arm = parameters[54] + parameters[68];
+            let mass4_arm = parameters[40] + mass5_arm;
+            let first4_z_plus_d3_mass4_arm = first4_z_arm + D3 * mass4_arm;
+            let t7_arm = D3 * (first4_z_arm + first4_z_plus_d3_mass4_arm);
+            let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t6_arm + t7_arm;
+            let inertia4_xz_arm = parameters[33] + c5_arm * t3_arm - inertia5_xy_arm;
+            let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
+                + c5_arm * inertia5_yz_arm;
+            let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
+            let first4_x_arm = parameters[37] + force4_z_by_5_arm;
+            let minus_force5_x_by_6_arm = s6_arm * parameters[65]
+                + c6_arm * parameters[66];
+            let first5_z_arm = parameters[53] - minus_force5_x_by_6_arm;
+            let first4_y_arm = parameters[38] - first5_z_arm;
+            let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
+                - s4_arm * first4_y_arm;
+            let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+            let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
+                - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
+            let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+            let t8_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+                + c3_arm * (2.0 * inertia3_xy_arm);
+            let t9_arm = s3_arm * t8_arm;
+            let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
+            let first3_y_arm = first4_z_plus_d3_mass4_arm + parameters[24];
+            let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+            let mass3_arm = parameters[26] + mass4_arm;
+            let t10_arm = D3
+                * (force2_y_by_3_arm + force2_y_by_3_arm + D3 * mass3_arm);
+            let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t9_arm + t10_arm;
+            let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t9_arm;
+            let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
+                + c3_arm * first3_y_arm;
+            let inertia2_xy_arm = parameters[6] + c3_arm * t8_arm - inertia3_xy_arm
+                - D3 * minus_force2_x_by_3_arm;
+            let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+                + s2_arm
+                    * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                        + c2_arm * (2.0 * inertia2_xy_arm));
+            let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
+            let inertia3_xz_arm = parameters[19]
+                - (c4_arm * t5_arm - inertia4_xy_arm);
+            let minus_force3_x_by_4_arm = s4_arm * first4_x_arm
+                + c4_arm * first4_y_arm;
+            let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
+            let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
+                - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+            let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+            let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
+                - s3_arm * inertia3_yz_arm;
+            let first3_z_arm = parameters[25] - minus_force3_x_by_4_arm;
+            let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm
+                - D3 * first3_z_arm;
+            let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
+                + c3_arm * inertia3_yz_arm;
+            let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+            let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
+                + c2_arm * inertia2_yz_arm;
+            let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+                + c2_arm * moment2_y_by_3_arm;
+            let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm
+                - s3_arm * inertia4_zz_arm;
+            let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm
+                + c3_arm * inertia4_zz_arm + minus_d3_force3_z_by_4_arm;
+            let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+                + c2_arm * moment2_y_by_4_arm;
+            let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
+            let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+            let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm
+                + s4_arm * inertia5_zz_arm + d3_force3_z_by_5_arm;
+            let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+                - s3_arm * moment4_z_by_5_arm;
+            let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+                + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+            let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+                + c2_arm * moment2_y_by_5_arm;
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+                - s5_arm * parameters[64];
+            let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
+            let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+                - s4_arm * minus_force4_x_by_6_arm;
+            let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+            let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+                - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+                + c5_arm * parameters[64];
+            let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+                - s3_arm * moment4_z_by_6_arm;
+            let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+                + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+            let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+                + c2_arm * moment2_y_by_6_arm;
+            let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t6_arm + t7_arm;
+            let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t10_arm;
+            let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+            let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+            let moment2_z_by_4_arm = moment3_z_by_4_arm
+                - s3_arm * minus_d3_force3_x_by_4_arm;
+            let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
+            let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+                - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+            let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+                - s3_arm * minus_force3_x_by_5_arm;
+            let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+            let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+                + s4_arm * minus_force5_z_by_6_arm;
+            let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+                - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+            let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
+            let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+                + c3_arm * minus_force4_z_by_6_arm;
+            let moment2_z_by_6_arm = moment3_z_by_6_arm
+                - D3 * minus_force2_y_by_6_arm;
+            let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
+            let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
+            let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
+            let masses_arm_6_6 = parameters[64] + parameters[69];
+            ::core::result::Result::Ok([
+                [
+                    masses_arm_1_1, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
+                    moment1_z_by_5_arm, moment1_z_by_6_arm,
+                ],
+                [
+                    minus_inertia1_yz_arm, masses_arm_2_2, moment2_z_by_3_arm, moment2_z_by_4_arm,
+                    moment2_z_by_5_arm, moment2_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
+                    moment3_z_by_5_arm, moment3_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
+                    moment4_z_by_5_arm, moment4_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
+                    masses_arm_5_5, -minus_moment5_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
+                    -minus_moment5_z_by_6_arm, masses_arm_6_6,
+                ],
+            ])
+        })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -2198,167 +2350,184 @@ impl Rx90 {
         ::overact::guard::finite(
             &[("joints", joints), ("base_parameters", base_parameters)],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        // --- sines and cosines
-        let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-        (s2_arm, c2_arm)] = ::overact::math::sin_cos_all([
-            joints[4], joints[5], joints[2], joints[3], joints[1],
-        ]);
-        // --- arm
-        let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
-            + c6_arm * (2.0 * base_parameters[54]);
-        let t1_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
-        let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t1_arm;
-        let moment5_x_by_6_arm = c6_arm * base_parameters[52]
-            - s6_arm * base_parameters[53];
-        let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
-        let t2_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
-            + c5_arm * (2.0 * inertia5_xy_arm);
-        let t3_arm = s5_arm * t2_arm;
-        let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t3_arm;
-        let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
-        let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t3_arm;
-        let inertia5_zz_arm = base_parameters[42] + t1_arm;
-        let inertia5_xz_arm = base_parameters[46]
-            - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
-        let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
-            + c6_arm * base_parameters[53];
-        let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
-        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
-        let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
-        let t4_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
-            + c4_arm * (2.0 * inertia4_xy_arm);
-        let t5_arm = s4_arm * t4_arm;
-        let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
-            - s6_arm * base_parameters[57];
-        let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
-        let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
-        let d3_m_4R = D3 * base_parameters[35];
-        let first3_y_arm = first4_z_arm + d3_m_4R;
-        let t6_arm = D3 * (first4_z_arm + first3_y_arm);
-        let inertia3_xx_arm = inertia4_xx_arm - t5_arm + t6_arm;
-        let inertia4_xz_arm = base_parameters[39] + c5_arm * t2_arm - inertia5_xy_arm;
-        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
-        let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
-        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * base_parameters[50];
-        let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
-        let minus_first5_z_arm = s6_arm * base_parameters[56]
-            + c6_arm * base_parameters[57];
-        let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
-        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
-        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
-        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
-            - minus_d3_force3_z_by_4_arm;
-        let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
-        let t7_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
-            + c3_arm * (2.0 * inertia3_xy_arm);
-        let t8_arm = s3_arm * t7_arm;
-        let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
-        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let t9_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
-        let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t8_arm + t9_arm;
-        let inertia2_xx_arm = inertia3_xx_arm - t8_arm;
-        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
-        let inertia2_xy_arm = base_parameters[31] + c3_arm * t7_arm - inertia3_xy_arm
-            - D3 * minus_force2_x_by_3_arm;
-        let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
-            + s2_arm
-                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
-                    + c2_arm * (2.0 * inertia2_xy_arm));
-        let inertia3_xz_arm = base_parameters[33] - (c4_arm * t4_arm - inertia4_xy_arm);
-        let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
-        let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
-        let moment3_z_by_4_arm = minus_d3_first3_z_arm
-            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-        let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
-        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
-        let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
-            + minus_d3_first3_z_arm;
-        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
-        let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
-        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
-        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
-            + c2_arm * moment2_y_by_3_arm;
-        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
-        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
-            + minus_d3_force3_z_by_4_arm;
-        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
-            + c2_arm * moment2_y_by_4_arm;
-        let force3_z_by_5_arm = s4_arm * first4_z_arm;
-        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
-        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
-            + d3_force3_z_by_5_arm;
-        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
-            - s3_arm * moment4_z_by_5_arm;
-        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
-            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
-        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
-            + c2_arm * moment2_y_by_5_arm;
-        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-            - s5_arm * base_parameters[48];
-        let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
-        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
-            - s4_arm * minus_force4_x_by_6_arm;
-        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
-        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
-            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-            + c5_arm * base_parameters[48];
-        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
-            - s3_arm * moment4_z_by_6_arm;
-        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
-            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
-        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
-            + c2_arm * moment2_y_by_6_arm;
-        let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t5_arm + t6_arm;
-        let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t9_arm;
-        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
-        let moment2_z_by_4_arm = moment3_z_by_4_arm - s3_arm * minus_d3_first3_z_arm;
-        let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
-        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
-            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
-        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
-            - s3_arm * minus_force3_x_by_5_arm;
-        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
-        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
-            + s4_arm * minus_force5_z_by_6_arm;
-        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
-            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
-        let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
-        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
-            + c3_arm * minus_force4_z_by_6_arm;
-        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
-        let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
-        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
-        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
-        let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
-        ::core::result::Result::Ok([
-            [
-                inertia1_zz_arm, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
-                moment1_z_by_5_arm, moment1_z_by_6_arm,
-            ],
-            [
-                minus_inertia1_yz_arm, inertia2_zz_arm, moment2_z_by_3_arm, moment2_z_by_4_arm,
-                moment2_z_by_5_arm, moment2_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
-                moment3_z_by_5_arm, moment3_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
-                moment4_z_by_5_arm, moment4_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
-                masses_arm_5_5, -minus_moment5_z_by_6_arm,
-            ],
-            [
-                moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
-                -minus_moment5_z_by_6_arm, masses_arm_6_6,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            // --- sines and cosines
+            let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm),
+            (s4_arm, c4_arm), (s2_arm, c2_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[4], joints[5], joints[2], joints[3], joints[1],
+            ]);
+            // --- arm
+            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
+                + c6_arm * (2.0 * base_parameters[54]);
+            let t1_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
+            let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t1_arm;
+            let moment5_x_by_6_arm = c6_arm * base_parameters[52]
+                - s6_arm * base_parameters[53];
+            let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
+            let t2_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+                + c5_arm * (2.0 * inertia5_xy_arm);
+            let t3_arm = s5_arm * t2_arm;
+            let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t3_arm;
+            let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
+            let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t3_arm;
+            let inertia5_zz_arm = base_parameters[42] + t1_arm;
+            let inertia5_xz_arm = base_parameters[46]
+                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
+            let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
+                + c6_arm * base_parameters[53];
+            let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+            let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
+                - s5_arm * inertia5_yz_arm;
+            let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+            let t4_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
+                + c4_arm * (2.0 * inertia4_xy_arm);
+            let t5_arm = s4_arm * t4_arm;
+            let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
+                - s6_arm * base_parameters[57];
+            let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
+            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
+            let d3_m_4R = D3 * base_parameters[35];
+            let first3_y_arm = first4_z_arm + d3_m_4R;
+            let t6_arm = D3 * (first4_z_arm + first3_y_arm);
+            let inertia3_xx_arm = inertia4_xx_arm - t5_arm + t6_arm;
+            let inertia4_xz_arm = base_parameters[39] + c5_arm * t2_arm
+                - inertia5_xy_arm;
+            let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
+                + c5_arm * inertia5_yz_arm;
+            let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm
+                - s5_arm * base_parameters[50];
+            let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
+            let minus_first5_z_arm = s6_arm * base_parameters[56]
+                + c6_arm * base_parameters[57];
+            let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+            let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
+                - s4_arm * first4_y_arm;
+            let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+            let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
+                - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
+            let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+            let t7_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+                + c3_arm * (2.0 * inertia3_xy_arm);
+            let t8_arm = s3_arm * t7_arm;
+            let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+            let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+            let t9_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
+            let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t8_arm
+                + t9_arm;
+            let inertia2_xx_arm = inertia3_xx_arm - t8_arm;
+            let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
+                + c3_arm * first3_y_arm;
+            let inertia2_xy_arm = base_parameters[31] + c3_arm * t7_arm
+                - inertia3_xy_arm - D3 * minus_force2_x_by_3_arm;
+            let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+                + s2_arm
+                    * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                        + c2_arm * (2.0 * inertia2_xy_arm));
+            let inertia3_xz_arm = base_parameters[33]
+                - (c4_arm * t4_arm - inertia4_xy_arm);
+            let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+            let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
+            let moment3_z_by_4_arm = minus_d3_first3_z_arm
+                - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+            let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+            let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
+                - s3_arm * inertia3_yz_arm;
+            let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
+                + minus_d3_first3_z_arm;
+            let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
+                + c3_arm * inertia3_yz_arm;
+            let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+            let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
+                + c2_arm * inertia2_yz_arm;
+            let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+                + c2_arm * moment2_y_by_3_arm;
+            let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm
+                - s3_arm * inertia4_zz_arm;
+            let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm
+                + c3_arm * inertia4_zz_arm + minus_d3_force3_z_by_4_arm;
+            let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+                + c2_arm * moment2_y_by_4_arm;
+            let force3_z_by_5_arm = s4_arm * first4_z_arm;
+            let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+            let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm
+                + s4_arm * inertia5_zz_arm + d3_force3_z_by_5_arm;
+            let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+                - s3_arm * moment4_z_by_5_arm;
+            let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+                + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+            let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+                + c2_arm * moment2_y_by_5_arm;
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+                - s5_arm * base_parameters[48];
+            let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
+            let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+                - s4_arm * minus_force4_x_by_6_arm;
+            let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+            let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+                - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+                + c5_arm * base_parameters[48];
+            let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+                - s3_arm * moment4_z_by_6_arm;
+            let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+                + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+            let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+                + c2_arm * moment2_y_by_6_arm;
+            let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t5_arm
+                + t6_arm;
+            let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t9_arm;
+            let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+            let moment2_z_by_4_arm = moment3_z_by_4_arm
+                - s3_arm * minus_d3_first3_z_arm;
+            let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
+            let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+                - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+            let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+                - s3_arm * minus_force3_x_by_5_arm;
+            let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+            let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+                + s4_arm * minus_force5_z_by_6_arm;
+            let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+                - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+            let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
+            let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+                + c3_arm * minus_force4_z_by_6_arm;
+            let moment2_z_by_6_arm = moment3_z_by_6_arm
+                - D3 * minus_force2_y_by_6_arm;
+            let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
+            let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+            let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+            let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
+            ::core::result::Result::Ok([
+                [
+                    inertia1_zz_arm, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
+                    moment1_z_by_5_arm, moment1_z_by_6_arm,
+                ],
+                [
+                    minus_inertia1_yz_arm, inertia2_zz_arm, moment2_z_by_3_arm, moment2_z_by_4_arm,
+                    moment2_z_by_5_arm, moment2_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
+                    moment3_z_by_5_arm, moment3_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
+                    moment4_z_by_5_arm, moment4_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
+                    masses_arm_5_5, -minus_moment5_z_by_6_arm,
+                ],
+                [
+                    moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
+                    -minus_moment5_z_by_6_arm, masses_arm_6_6,
+                ],
+            ])
+        })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -2384,277 +2553,297 @@ impl Rx90 {
                 ("parameters", parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
-        /// 2 d3
-        const TWICE_D3: ::core::primitive::f64 = 0.9;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let t1_arm = parameters[40] + parameters[54] + parameters[68];
-        let t2_arm = parameters[26] + t1_arm;
-        let t3_arm = D3_SQUARED * t2_arm;
-        let t4_arm = parameters[5] - (parameters[8] + t3_arm);
-        let t5_arm = parameters[10] + t3_arm;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let twice_xy_2 = parameters[6] + parameters[6];
-        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let t6_arm = parameters[39] + D3 * t1_arm;
-        let t7_arm = parameters[34] + D3 * (parameters[39] + t6_arm);
-        let t8_arm = parameters[17] + t7_arm - parameters[20];
-        let t9_arm = parameters[22] + t7_arm;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
-        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
-        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t10_arm = t6_arm + parameters[24];
-        let t11_arm = bias_wd3_x_arm * (t8_arm + t9_arm)
-            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
-            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
-            + bias_a3_z_arm * t10_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let t12_arm = parameters[31] + parameters[48] - parameters[34];
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t13_arm = bias_wd4_x_arm * t12_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-            - parameters[32] * bias_u4_zx_arm - parameters[33] * minus_bias_u4_yx_arm
-            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
-        let bias_a2_y_arm = 9.81 * c2_arm;
-        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
-        let bias_a2_x_arm = 9.81 * s2_arm;
-        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
-        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
-            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let my_4_minus_mz_5 = parameters[38] - parameters[53];
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
-            + joint_velocities[4] * w5_y_arm;
-        let t14_arm = parameters[45] + parameters[62] - parameters[48];
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
-            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t15_arm = bias_wd5_x_arm * t14_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-            - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
-            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t16_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t16_arm;
-        let my_5_plus_mz_6 = parameters[52] + parameters[67];
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let bias_u6_yy_minus_bias_u5_yy_arm = minus_bias_u5_yy_arm
-            - minus_bias_u6_yy_arm;
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t16_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = bias_wd6_x_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * bias_u6_zx_arm
-            - parameters[61] * minus_bias_u6_yx_arm
-            + parameters[63] * bias_u6_yy_minus_bias_u5_yy_arm
-            + parameters[66] * bias_a5_y_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let t17_arm = w6_z_squared_arm - w6_x_squared_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-            + parameters[60] * bias_u6_zy_arm + parameters[61] * t17_arm
-            - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
-        let moment5_x_arm = t15_arm + bias_a5_z_arm * my_5_plus_mz_6
-            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t18_arm = w5_x_w5_z_arm * (t14_arm - zz_5_plus_yy_6)
-            + parameters[46] * bias_u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
-        let t19_arm = bias_u6_yy_minus_bias_u5_yy_arm + t17_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_bias_wd5_y_arm - parameters[60] * t19_arm
-            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm
-            - (parameters[65] * minus_bias_a6_y_arm + parameters[66] * bias_a6_x_arm);
-        let moment5_y_arm = t18_arm + moment6_z_arm;
-        let moment4_x_arm = t13_arm + bias_a4_z_arm * my_4_minus_mz_5
-            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t20_arm = w4_x_w4_z_arm * (t12_arm - zz_4_plus_yy_5)
-            + parameters[32] * bias_u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-            - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t21_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t14_arm
-            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
-        let moment5_z_arm = t21_arm + parameters[51] * bias_a5_y_arm
-            - bias_a5_x_arm * my_5_plus_mz_6
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t20_arm - moment5_z_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_bias_u6_xx_arm = t19_arm + minus_bias_u6_yy_arm;
-        let force6_x_arm = parameters[66] * bias_u6_xy_arm
-            - parameters[65] * minus_bias_u6_xx_arm;
-        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-            + parameters[66] * minus_bias_u6_yy_arm;
-        let force5_x_arm = bias_u5_xy_arm * my_5_plus_mz_6
-            - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-            + s6_arm * minus_force6_y_arm;
-        let force6_z_arm = parameters[65] * bias_u6_zx_arm
-            + parameters[66] * bias_u6_zy_arm;
-        let force5_y_arm = parameters[51] * bias_u5_yx_arm
-            - minus_bias_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
-        let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
-            - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-            - s5_arm * force5_y_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let force5_z_arm = parameters[51] * bias_u5_zx_arm
-            + bias_u5_zy_arm * my_5_plus_mz_6
-            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
-            + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t11_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
-            - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let t22_arm = minus_bias_wd3_y_arm * (t8_arm - t9_arm)
-            + parameters[18] * bias_u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t23_arm = minus_w4_x_w4_y_arm * t12_arm
-            - minus_bias_wd3_y_arm * zz_4_plus_yy_5
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-            + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
-        let moment4_z_arm = t23_arm
-            - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t22_arm + moment4_z_arm;
-        let moment2_x_arm = bias_wd2_x_arm * (t4_arm + t5_arm)
-            - minus_bias_wd2_y_arm * twice_xy_2 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
-            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t10_arm
-            - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = minus_bias_wd2_y_arm * (t4_arm - t5_arm)
-            + bias_wd2_x_arm * twice_xy_2
-            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-            - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
-            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
-        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
-            - parameters[12] * bias_a2_x_arm;
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * t10_arm
-            - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = parameters[37] * bias_u4_zx_arm
-            + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
-            + c5_arm * force5_y_arm;
-        let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * t10_arm + force4_z_arm;
-        let t25_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * t8_arm + parameters[23] * bias_a3_y_arm
-            - bias_a3_x_arm * t10_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
-        let moment3_z_arm = t25_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t24_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
-        let tau_2_arm = joint_velocities[1] * parameters[14]
-            + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let tau_3_arm = joint_velocities[2] * parameters[28]
-            + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let tau_4_arm = joint_velocities[3] * parameters[42]
-            + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let tau_5_arm = joint_velocities[4] * parameters[56]
-            + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let tau_6_arm = joint_velocities[5] * parameters[70]
-            + ::overact::math::signed(parameters[71], joint_velocities[5])
-            + parameters[72];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        ::core::result::Result::Ok([
-            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
-            force_on_u6_arm,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            /// d3²
+            const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+            /// 2 d3
+            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+            let t1_arm = parameters[40] + parameters[54] + parameters[68];
+            let t2_arm = parameters[26] + t1_arm;
+            let t3_arm = D3_SQUARED * t2_arm;
+            let t4_arm = parameters[5] - (parameters[8] + t3_arm);
+            let t5_arm = parameters[10] + t3_arm;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+            let twice_xy_2 = parameters[6] + parameters[6];
+            let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+            let t6_arm = parameters[39] + D3 * t1_arm;
+            let t7_arm = parameters[34] + D3 * (parameters[39] + t6_arm);
+            let t8_arm = parameters[17] + t7_arm - parameters[20];
+            let t9_arm = parameters[22] + t7_arm;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+            let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+            let t10_arm = t6_arm + parameters[24];
+            let t11_arm = bias_wd3_x_arm * (t8_arm + t9_arm)
+                - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
+                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+                + bias_a3_z_arm * t10_arm;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let t12_arm = parameters[31] + parameters[48] - parameters[34];
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
+                + joint_velocities[3] * w4_x_arm;
+            let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let t13_arm = bias_wd4_x_arm * t12_arm
+                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+                - parameters[32] * bias_u4_zx_arm
+                - parameters[33] * minus_bias_u4_yx_arm
+                + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+            let bias_a2_y_arm = 9.81 * c2_arm;
+            let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
+                + D3 * bias_u2_xy_arm;
+            let bias_a2_x_arm = 9.81 * s2_arm;
+            let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm
+                - D3 * minus_bias_u2_xx_arm;
+            let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+                - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
+                - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let t14_arm = parameters[45] + parameters[62] - parameters[48];
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+                + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+            let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t15_arm = bias_wd5_x_arm * t14_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+                - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
+                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+            let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+                + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+            let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
+                + D3 * bias_u3_xy_arm;
+            let t16_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+            let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                + c4_arm * t16_arm;
+            let my_5_plus_mz_6 = parameters[52] + parameters[67];
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
+                + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
+            let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let bias_u6_yy_minus_bias_u5_yy_arm = minus_bias_u5_yy_arm
+                - minus_bias_u6_yy_arm;
+            let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                - s4_arm * t16_arm;
+            let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+            let moment6_x_arm = bias_wd6_x_arm * xx_6_minus_yy_6
+                - parameters[64] * minus_w6_y_w6_z_arm
+                - parameters[60] * bias_u6_zx_arm
+                - parameters[61] * minus_bias_u6_yx_arm
+                + parameters[63] * bias_u6_yy_minus_bias_u5_yy_arm
+                + parameters[66] * bias_a5_y_arm;
+            let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+            let t17_arm = w6_z_squared_arm - w6_x_squared_arm;
+            let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+                + parameters[60] * bias_u6_zy_arm + parameters[61] * t17_arm
+                - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+            let moment5_x_arm = t15_arm + bias_a5_z_arm * my_5_plus_mz_6
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+            let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let t18_arm = w5_x_w5_z_arm * (t14_arm - zz_5_plus_yy_6)
+                + parameters[46] * bias_u5_zy_arm
+                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+                - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+            let t19_arm = bias_u6_yy_minus_bias_u5_yy_arm + t17_arm;
+            let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+            let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+            let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+            let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
+                + c6_arm * bias_a5_z_arm;
+            let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+            let moment6_z_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+                - parameters[64] * minus_bias_wd5_y_arm - parameters[60] * t19_arm
+                + parameters[61] * minus_bias_u6_yz_arm
+                + parameters[63] * bias_u6_xz_arm
+                - (parameters[65] * minus_bias_a6_y_arm
+                    + parameters[66] * bias_a6_x_arm);
+            let moment5_y_arm = t18_arm + moment6_z_arm;
+            let moment4_x_arm = t13_arm + bias_a4_z_arm * my_4_minus_mz_5
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let t20_arm = w4_x_w4_z_arm * (t12_arm - zz_4_plus_yy_5)
+                + parameters[32] * bias_u4_zy_arm
+                + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+                - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+            let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+            let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+            let t21_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t14_arm
+                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+                - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
+            let moment5_z_arm = t21_arm + parameters[51] * bias_a5_y_arm
+                - bias_a5_x_arm * my_5_plus_mz_6
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t20_arm - moment5_z_arm;
+            let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+            let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let minus_bias_u6_xx_arm = t19_arm + minus_bias_u6_yy_arm;
+            let force6_x_arm = parameters[66] * bias_u6_xy_arm
+                - parameters[65] * minus_bias_u6_xx_arm;
+            let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+                + parameters[66] * minus_bias_u6_yy_arm;
+            let force5_x_arm = bias_u5_xy_arm * my_5_plus_mz_6
+                - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                + s6_arm * minus_force6_y_arm;
+            let force6_z_arm = parameters[65] * bias_u6_zx_arm
+                + parameters[66] * bias_u6_zy_arm;
+            let force5_y_arm = parameters[51] * bias_u5_yx_arm
+                - minus_bias_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
+            let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
+                - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - s5_arm * force5_y_arm;
+            let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let force5_z_arm = parameters[51] * bias_u5_zx_arm
+                + bias_u5_zy_arm * my_5_plus_mz_6
+                - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+            let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+                + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                - c4_arm * minus_force4_y_arm;
+            let moment3_x_arm = t11_arm + c4_arm * moment4_x_arm
+                - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let t22_arm = minus_bias_wd3_y_arm * (t8_arm - t9_arm)
+                + parameters[18] * bias_u3_zy_arm
+                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+                - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+            let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+            let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+            let t23_arm = minus_w4_x_w4_y_arm * t12_arm
+                - minus_bias_wd3_y_arm * zz_4_plus_yy_5
+                + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+                + parameters[33] * minus_bias_u4_yz_arm
+                + parameters[35] * bias_u4_xz_arm;
+            let moment4_z_arm = t23_arm
+                - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t22_arm + moment4_z_arm;
+            let moment2_x_arm = bias_wd2_x_arm * (t4_arm + t5_arm)
+                - minus_bias_wd2_y_arm * twice_xy_2
+                + bias_u2_xy_arm * xz_2_minus_d3_mz_3
+                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+                + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let force3_z_arm = parameters[23] * bias_u3_zx_arm
+                + bias_u3_zy_arm * t10_arm - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = minus_bias_wd2_y_arm * (t4_arm - t5_arm)
+                + bias_wd2_x_arm * twice_xy_2
+                + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+                - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+            let tau_1_arm = joint_velocities[0] * parameters[2]
+                + ::overact::math::wide::signed(parameters[3], joint_velocities[0])
+                + parameters[4];
+            let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+                - bias_u2_xy_arm * t4_arm
+                + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
+                - parameters[12] * bias_a2_x_arm;
+            let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                + s4_arm * minus_force4_y_arm;
+            let force3_x_arm = bias_u3_xy_arm * t10_arm
+                - parameters[23] * minus_bias_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = parameters[37] * bias_u4_zx_arm
+                + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = parameters[23] * bias_u3_xy_arm
+                - minus_bias_u3_yy_arm * t10_arm + force4_z_arm;
+            let t25_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * t8_arm + parameters[23] * bias_a3_y_arm
+                - bias_a3_x_arm * t10_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let moment3_z_arm = t25_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t24_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm)
+                + moment3_z_arm;
+            let tau_2_arm = joint_velocities[1] * parameters[14]
+                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
+                + parameters[16];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let tau_3_arm = joint_velocities[2] * parameters[28]
+                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
+                + parameters[30];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let tau_4_arm = joint_velocities[3] * parameters[42]
+                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
+                + parameters[44];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let tau_5_arm = joint_velocities[4] * parameters[56]
+                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
+                + parameters[58];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let tau_6_arm = joint_velocities[5] * parameters[70]
+                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
+                + parameters[72];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            ::core::result::Result::Ok([
+                force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+                force_on_u6_arm,
+            ])
+        })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -2680,277 +2869,311 @@ impl Rx90 {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        /// 2 d3
-        const TWICE_D3: ::core::primitive::f64 = 0.9;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let yy_2R_minus_zz_2R = base_parameters[27] - base_parameters[4];
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
-        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let d3_m_4R = D3 * base_parameters[35];
-        let d3_d3_m_4R = D3 * d3_m_4R;
-        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
-        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
-        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
-        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t1_arm = bias_wd3_x_arm * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
-            - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
-            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
-            + d3_d3_m_4R * bias_u2_zx_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t2_arm = base_parameters[37] * bias_wd4_x_arm
-            - base_parameters[36] * minus_w4_y_w4_z_arm
-            - base_parameters[40] * bias_u4_zx_arm
-            - base_parameters[39] * minus_bias_u4_yx_arm
-            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
-        let bias_a2_y_arm = 9.81 * c2_arm;
-        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
-        let bias_a2_x_arm = 9.81 * s2_arm;
-        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
-        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
-            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
-            + joint_velocities[4] * w5_y_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
-            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t3_arm = base_parameters[43] * bias_wd5_x_arm
-            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
-            + base_parameters[46] * bias_u5_yx_arm
-            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t4_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t5_arm = w6_y_squared_arm - w6_z_squared_arm;
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t4_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = base_parameters[49] * bias_wd6_x_arm
-            - base_parameters[48] * minus_w6_y_w6_z_arm
-            - base_parameters[54] * bias_u6_zx_arm
-            - base_parameters[52] * minus_bias_u6_yx_arm + base_parameters[53] * t5_arm
-            + base_parameters[57] * bias_a5_y_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let bias_u5_yy_minus_bias_u6_xx_arm = minus_bias_u6_xx_arm
-            - minus_bias_u5_yy_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
-            + base_parameters[54] * bias_u6_zy_arm
-            + base_parameters[52] * bias_u5_yy_minus_bias_u6_xx_arm
-            - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
-        let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
-            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-            + base_parameters[45] * bias_u5_zy_arm
-            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
-            - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
-        let t7_arm = t5_arm + bias_u5_yy_minus_bias_u6_xx_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = base_parameters[49] * minus_w6_x_w6_y_arm
-            - base_parameters[48] * minus_bias_wd5_y_arm - base_parameters[54] * t7_arm
-            + base_parameters[52] * minus_bias_u6_yz_arm
-            + base_parameters[53] * bias_u6_xz_arm
-            - (base_parameters[56] * minus_bias_a6_y_arm
-                + base_parameters[57] * bias_a6_x_arm);
-        let moment5_y_arm = t6_arm + moment6_z_arm;
-        let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
-            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-            + base_parameters[40] * bias_u4_zy_arm
-            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
-            - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t9_arm = base_parameters[42] * bias_wd5_z_arm
-            - base_parameters[43] * w5_x_w5_y_arm
-            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
-            - base_parameters[46] * bias_u5_yz_arm
-            + base_parameters[47] * bias_u5_xz_arm;
-        let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
-            - base_parameters[50] * bias_a5_x_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t8_arm - moment5_z_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
-            - base_parameters[56] * minus_bias_u6_xx_arm;
-        let minus_bias_u6_yy_arm = minus_bias_u6_xx_arm - t7_arm;
-        let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
-            + base_parameters[57] * minus_bias_u6_yy_arm;
-        let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
-            - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-            + s6_arm * minus_force6_y_arm;
-        let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
-            + base_parameters[57] * bias_u6_zy_arm;
-        let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
-            - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
-        let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
-            - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-            - s5_arm * force5_y_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
-            + base_parameters[50] * bias_u5_zy_arm
-            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-        let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
-            + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
-            - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t10_arm = minus_bias_wd3_y_arm
-            * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-            + base_parameters[32] * bias_u3_zy_arm
-            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-            - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
-            - base_parameters[36] * minus_bias_wd3_y_arm
-            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
-            + base_parameters[39] * minus_bias_u4_yz_arm
-            + base_parameters[38] * bias_u4_xz_arm;
-        let moment4_z_arm = t11_arm
-            - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t10_arm + moment4_z_arm;
-        let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
-            - (bias_wd2_x_arm * yy_2R_minus_zz_2R + base_parameters[31] * bias_u2_zx_arm)
-            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
-            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
-        let t12_arm = zz_2R_plus_d3_d3_m_4R + yy_2R_minus_zz_2R;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
-            + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
-            - minus_bias_wd2_y_arm * (t12_arm + zz_2R_plus_d3_d3_m_4R)
-            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-            - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
-            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
-        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * d3_m_4R
-            - base_parameters[41] * minus_bias_u3_xx_arm
-            + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
-            + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
-            + c5_arm * force5_y_arm;
-        let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
-        let t13_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-            + bias_u2_xy_arm * t12_arm + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
-            - base_parameters[26] * bias_a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-        let t14_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
-            + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
-            - D3 * c4_force4_x_minus_s4_force4_y_arm;
-        let moment3_z_arm = t14_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t13_arm + moment3_z_arm;
-        let tau_2_arm = joint_velocities[1] * base_parameters[5]
-            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
-            + base_parameters[7];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let tau_3_arm = joint_velocities[2] * base_parameters[9]
-            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
-            + base_parameters[11];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let tau_4_arm = joint_velocities[3] * base_parameters[13]
-            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
-            + base_parameters[15];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let tau_5_arm = joint_velocities[4] * base_parameters[17]
-            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
-            + base_parameters[19];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let tau_6_arm = joint_velocities[5] * base_parameters[21]
-            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
-            + base_parameters[23];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        ::core::result::Result::Ok([
-            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
-            force_on_u6_arm,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            /// 2 d3
+            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+            let yy_2R_minus_zz_2R = base_parameters[27] - base_parameters[4];
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+            let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+            let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+            let d3_m_4R = D3 * base_parameters[35];
+            let d3_d3_m_4R = D3 * d3_m_4R;
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+            let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let t1_arm = bias_wd3_x_arm
+                * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
+                - base_parameters[32] * bias_u3_zx_arm
+                + base_parameters[33] * bias_u3_xy_arm
+                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+                + d3_d3_m_4R * bias_u2_zx_arm;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
+                + joint_velocities[3] * w4_x_arm;
+            let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let t2_arm = base_parameters[37] * bias_wd4_x_arm
+                - base_parameters[36] * minus_w4_y_w4_z_arm
+                - base_parameters[40] * bias_u4_zx_arm
+                - base_parameters[39] * minus_bias_u4_yx_arm
+                + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+            let bias_a2_y_arm = 9.81 * c2_arm;
+            let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
+                + D3 * bias_u2_xy_arm;
+            let bias_a2_x_arm = 9.81 * s2_arm;
+            let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm
+                - D3 * minus_bias_u2_xx_arm;
+            let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+                - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
+                - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+                + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+            let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t3_arm = base_parameters[43] * bias_wd5_x_arm
+                + base_parameters[42] * w5_y_w5_z_arm
+                - base_parameters[45] * bias_u5_zx_arm
+                + base_parameters[46] * bias_u5_yx_arm
+                + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+            let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+                + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+            let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
+                + D3 * bias_u3_xy_arm;
+            let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+            let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                + c4_arm * t4_arm;
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
+                + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
+            let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let t5_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                - s4_arm * t4_arm;
+            let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+            let moment6_x_arm = base_parameters[49] * bias_wd6_x_arm
+                - base_parameters[48] * minus_w6_y_w6_z_arm
+                - base_parameters[54] * bias_u6_zx_arm
+                - base_parameters[52] * minus_bias_u6_yx_arm
+                + base_parameters[53] * t5_arm + base_parameters[57] * bias_a5_y_arm;
+            let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+            let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let bias_u5_yy_minus_bias_u6_xx_arm = minus_bias_u6_xx_arm
+                - minus_bias_u5_yy_arm;
+            let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+            let moment6_y_arm = w6_x_w6_z_arm
+                * (base_parameters[49] - base_parameters[48])
+                + base_parameters[54] * bias_u6_zy_arm
+                + base_parameters[52] * bias_u5_yy_minus_bias_u6_xx_arm
+                - base_parameters[53] * bias_u6_xy_arm
+                - base_parameters[56] * bias_a5_y_arm;
+            let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+            let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+                + base_parameters[45] * bias_u5_zy_arm
+                + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+                - base_parameters[47] * bias_u5_xy_arm
+                - base_parameters[55] * bias_a5_z_arm;
+            let t7_arm = t5_arm + bias_u5_yy_minus_bias_u6_xx_arm;
+            let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+            let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+            let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+            let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
+                + c6_arm * bias_a5_z_arm;
+            let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+            let moment6_z_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+                - base_parameters[48] * minus_bias_wd5_y_arm
+                - base_parameters[54] * t7_arm
+                + base_parameters[52] * minus_bias_u6_yz_arm
+                + base_parameters[53] * bias_u6_xz_arm
+                - (base_parameters[56] * minus_bias_a6_y_arm
+                    + base_parameters[57] * bias_a6_x_arm);
+            let moment5_y_arm = t6_arm + moment6_z_arm;
+            let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+                + base_parameters[40] * bias_u4_zy_arm
+                + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+                - base_parameters[38] * bias_u4_xy_arm
+                - base_parameters[51] * bias_a4_z_arm;
+            let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+            let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+            let t9_arm = base_parameters[42] * bias_wd5_z_arm
+                - base_parameters[43] * w5_x_w5_y_arm
+                + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+                - base_parameters[46] * bias_u5_yz_arm
+                + base_parameters[47] * bias_u5_xz_arm;
+            let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
+                - base_parameters[50] * bias_a5_x_arm
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t8_arm - moment5_z_arm;
+            let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+            let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
+                - base_parameters[56] * minus_bias_u6_xx_arm;
+            let minus_bias_u6_yy_arm = minus_bias_u6_xx_arm - t7_arm;
+            let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
+                + base_parameters[57] * minus_bias_u6_yy_arm;
+            let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
+                - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                + s6_arm * minus_force6_y_arm;
+            let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
+                + base_parameters[57] * bias_u6_zy_arm;
+            let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
+                - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
+            let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
+                - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - s5_arm * force5_y_arm;
+            let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
+                + base_parameters[50] * bias_u5_zy_arm
+                - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+            let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
+                + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                - c4_arm * minus_force4_y_arm;
+            let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm
+                - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+            let t10_arm = minus_bias_wd3_y_arm
+                * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
+                + base_parameters[32] * bias_u3_zy_arm
+                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+                - base_parameters[34] * bias_u3_xy_arm
+                - base_parameters[41] * bias_a3_z_arm;
+            let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+            let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+            let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+                - base_parameters[36] * minus_bias_wd3_y_arm
+                + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+                + base_parameters[39] * minus_bias_u4_yz_arm
+                + base_parameters[38] * bias_u4_xz_arm;
+            let moment4_z_arm = t11_arm
+                - (base_parameters[51] * bias_a5_z_arm
+                    + base_parameters[44] * bias_a4_x_arm) + s5_arm * moment5_x_arm
+                + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t10_arm + moment4_z_arm;
+            let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
+                - (bias_wd2_x_arm * yy_2R_minus_zz_2R
+                    + base_parameters[31] * bias_u2_zx_arm)
+                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+                + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+            let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
+            let t12_arm = zz_2R_plus_d3_d3_m_4R + yy_2R_minus_zz_2R;
+            let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
+                + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
+                - minus_bias_wd2_y_arm * (t12_arm + zz_2R_plus_d3_d3_m_4R)
+                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+                - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+            let tau_1_arm = joint_velocities[0] * base_parameters[1]
+                + ::overact::math::wide::signed(
+                    base_parameters[2],
+                    joint_velocities[0],
+                ) + base_parameters[3];
+            let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                + s4_arm * minus_force4_y_arm;
+            let force3_x_arm = bias_u3_xy_arm * d3_m_4R
+                - base_parameters[41] * minus_bias_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
+                + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
+                - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
+            let t13_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+                + bias_u2_xy_arm * t12_arm
+                + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
+                - base_parameters[26] * bias_a2_x_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+            let t14_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
+                + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
+                - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let moment3_z_arm = t14_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t13_arm + moment3_z_arm;
+            let tau_2_arm = joint_velocities[1] * base_parameters[5]
+                + ::overact::math::wide::signed(
+                    base_parameters[6],
+                    joint_velocities[1],
+                ) + base_parameters[7];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let tau_3_arm = joint_velocities[2] * base_parameters[9]
+                + ::overact::math::wide::signed(
+                    base_parameters[10],
+                    joint_velocities[2],
+                ) + base_parameters[11];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let tau_4_arm = joint_velocities[3] * base_parameters[13]
+                + ::overact::math::wide::signed(
+                    base_parameters[14],
+                    joint_velocities[3],
+                ) + base_parameters[15];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let tau_5_arm = joint_velocities[4] * base_parameters[17]
+                + ::overact::math::wide::signed(
+                    base_parameters[18],
+                    joint_velocities[4],
+                ) + base_parameters[19];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let tau_6_arm = joint_velocities[5] * base_parameters[21]
+                + ::overact::math::wide::signed(
+                    base_parameters[22],
+                    joint_velocities[5],
+                ) + base_parameters[23];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            ::core::result::Result::Ok([
+                force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+                force_on_u6_arm,
+            ])
+        })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -2978,467 +3201,521 @@ impl Rx90 {
                 ("parameters", parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
-        /// 2 d3
-        const TWICE_D3: ::core::primitive::f64 = 0.9;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let mass5_arm = parameters[54] + parameters[68];
-        let mass4_arm = parameters[40] + mass5_arm;
-        let mass3_arm = parameters[26] + mass4_arm;
-        let d3_squared_mass3_arm = D3_SQUARED * mass3_arm;
-        let t1_arm = parameters[5] - (parameters[8] + d3_squared_mass3_arm);
-        let zz_2_plus_d3_squared_mass3_arm = parameters[10] + d3_squared_mass3_arm;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let twice_xy_2 = parameters[6] + parameters[6];
-        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let mz_4_plus_d3_mass4_arm = parameters[39] + D3 * mass4_arm;
-        let t2_arm = D3 * (parameters[39] + mz_4_plus_d3_mass4_arm);
-        let t3_arm = parameters[34] + t2_arm;
-        let t4_arm = parameters[17] + t3_arm - parameters[20];
-        let t5_arm = parameters[22] + t3_arm;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
-        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
-        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t6_arm = mz_4_plus_d3_mass4_arm + parameters[24];
-        let t7_arm = bias_wd3_x_arm * (t4_arm + t5_arm) - parameters[18] * bias_u3_zx_arm
-            + parameters[19] * bias_u3_xy_arm
-            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
-            + bias_a3_z_arm * t6_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let t8_arm = parameters[31] + parameters[48] - parameters[34];
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t9_arm = bias_wd4_x_arm * t8_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-            - parameters[32] * bias_u4_zx_arm - parameters[33] * minus_bias_u4_yx_arm
-            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
-        let bias_a2_y_arm = 9.81 * c2_arm;
-        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
-        let bias_a2_x_arm = 9.81 * s2_arm;
-        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
-        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
-            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let my_4_minus_mz_5 = parameters[38] - parameters[53];
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
-            + joint_velocities[4] * w5_y_arm;
-        let t10_arm = parameters[45] + parameters[62] - parameters[48];
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
-            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t11_arm = bias_wd5_x_arm * t10_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-            - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
-            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t12_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t12_arm;
-        let first5_y_arm = parameters[52] + parameters[67];
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t13_arm = bias_wd6_x_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * bias_u6_zx_arm
-            - parameters[61] * minus_bias_u6_yx_arm
-            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t12_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = t13_arm + parameters[66] * bias_a5_y_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-            + parameters[60] * bias_u6_zy_arm
-            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
-            - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
-        let moment5_x_arm = t11_arm + bias_a5_z_arm * first5_y_arm
-            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t14_arm = w5_x_w5_z_arm * (t10_arm - zz_5_plus_yy_6)
-            + parameters[46] * bias_u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let t15_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_bias_wd5_y_arm
-            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = t15_arm
-            - (parameters[65] * minus_bias_a6_y_arm + parameters[66] * bias_a6_x_arm);
-        let moment5_y_arm = t14_arm + moment6_z_arm;
-        let moment4_x_arm = t9_arm + bias_a4_z_arm * my_4_minus_mz_5
-            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t16_arm = w4_x_w4_z_arm * (t8_arm - zz_4_plus_yy_5)
-            + parameters[32] * bias_u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-            - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t17_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t10_arm
-            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
-        let moment5_z_arm = t17_arm + parameters[51] * bias_a5_y_arm
-            - bias_a5_x_arm * first5_y_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t16_arm - moment5_z_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let force6_x_arm = parameters[66] * bias_u6_xy_arm
-            - parameters[65] * minus_bias_u6_xx_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-            + parameters[66] * minus_bias_u6_yy_arm;
-        let force5_x_arm = bias_u5_xy_arm * first5_y_arm
-            - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-            + s6_arm * minus_force6_y_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let force6_z_arm = parameters[65] * bias_u6_zx_arm
-            + parameters[66] * bias_u6_zy_arm;
-        let force5_y_arm = parameters[51] * bias_u5_yx_arm
-            - minus_bias_u5_yy_arm * first5_y_arm + force6_z_arm;
-        let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
-            - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-            - s5_arm * force5_y_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let force5_z_arm = parameters[51] * bias_u5_zx_arm
-            + bias_u5_zy_arm * first5_y_arm
-            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
-            + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t7_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
-            - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let t18_arm = minus_bias_wd3_y_arm * (t4_arm - t5_arm)
-            + parameters[18] * bias_u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t19_arm = minus_w4_x_w4_y_arm * t8_arm
-            - minus_bias_wd3_y_arm * zz_4_plus_yy_5
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-            + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
-        let moment4_z_arm = t19_arm
-            - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t18_arm + moment4_z_arm;
-        let moment2_x_arm = bias_wd2_x_arm * (t1_arm + zz_2_plus_d3_squared_mass3_arm)
-            - minus_bias_wd2_y_arm * twice_xy_2 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
-            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t6_arm
-            - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = minus_bias_wd2_y_arm
-            * (t1_arm - zz_2_plus_d3_squared_mass3_arm) + bias_wd2_x_arm * twice_xy_2
-            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-            - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
-            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
-        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
-        let inertia5_yy_arm = parameters[48] + parameters[64];
-        let t20_arm = s6_arm * xx_6_minus_yy_6 + c6_arm * (2.0 * parameters[60]);
-        let t21_arm = s6_arm * t20_arm;
-        let inertia5_xx_arm = parameters[45] + parameters[59] - t21_arm;
-        let moment5_x_by_6_arm = c6_arm * parameters[61] - s6_arm * parameters[63];
-        let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
-        let t22_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
-            + c5_arm * (2.0 * inertia5_xy_arm);
-        let t23_arm = s5_arm * t22_arm;
-        let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t23_arm;
-        let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
-        let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t23_arm;
-        let inertia5_zz_arm = zz_5_plus_yy_6 + t21_arm;
-        let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
-        let inertia5_xz_arm = parameters[47] - (c6_arm * t20_arm - parameters[60]);
-        let minus_moment5_z_by_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
-        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
-        let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
-        let t24_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
-            + c4_arm * (2.0 * inertia4_xy_arm);
-        let t25_arm = s4_arm * t24_arm;
-        let minus_force5_z_by_6_arm = c6_arm * parameters[65] - s6_arm * parameters[66];
-        let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
-        let minus_force4_x_by_5_arm = s5_arm * first5_x_arm + c5_arm * first5_y_arm;
-        let t26_arm = t2_arm + TWICE_D3 * minus_force4_x_by_5_arm;
-        let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t25_arm + t26_arm;
-        let inertia4_xz_arm = parameters[33] + c5_arm * t22_arm - inertia5_xy_arm;
-        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
-        let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
-        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
-        let first4_x_arm = parameters[37] + force4_z_by_5_arm;
-        let minus_force5_x_by_6_arm = s6_arm * parameters[65] + c6_arm * parameters[66];
-        let first4_y_arm = my_4_minus_mz_5 + minus_force5_x_by_6_arm;
-        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
-        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
-        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
-            - minus_d3_force3_z_by_4_arm;
-        let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
-        let t27_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
-            + c3_arm * (2.0 * inertia3_xy_arm);
-        let t28_arm = s3_arm * t27_arm;
-        let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
-        let first3_y_arm = t6_arm + minus_force4_x_by_5_arm;
-        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
-        let t29_arm = d3_force2_y_by_3_arm + d3_squared_mass3_arm + d3_force2_y_by_3_arm;
-        let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t28_arm + t29_arm;
-        let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t28_arm;
-        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
-        let inertia2_xy_arm = parameters[6] + c3_arm * t27_arm - inertia3_xy_arm
-            - D3 * minus_force2_x_by_3_arm;
-        let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
-            + s2_arm
-                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
-                    + c2_arm * (2.0 * inertia2_xy_arm));
-        let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
-        ::overact::guard::mass(masses_arm_1_1)?;
-        let inv_pivot_1 = 1.0 / masses_arm_1_1;
-        let minus_force3_x_by_4_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
-        let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
-        let inertia3_xz_arm = parameters[19] - (c4_arm * t24_arm - inertia4_xy_arm);
-        let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
-            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-        let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
-        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
-        let inertia2_xz_arm = minus_d3_force3_x_by_4_arm + xz_2_minus_d3_mz_3
-            + moment2_x_by_3_arm;
-        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
-        let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
-        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
-        let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
-        let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t25_arm + t26_arm;
-        let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t29_arm;
-        let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
-        let pivot_2 = masses_arm_2_2 - minus_inertia1_yz_arm * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - bias_u2_xy_arm * t1_arm + bias_a2_y_arm * (parameters[11] + D3 * mass3_arm)
-            - parameters[12] * bias_a2_x_arm;
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * t6_arm
-            - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = parameters[37] * bias_u4_zx_arm
-            + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
-            + c5_arm * force5_y_arm;
-        let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * t6_arm + force4_z_arm;
-        let t31_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * t4_arm + parameters[23] * bias_a3_y_arm
-            - bias_a3_x_arm * t6_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
-        let moment3_z_arm = t31_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t30_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
-        let tau_2_arm = joint_velocities[1] * parameters[14]
-            + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
-        let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
-        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
-            + c2_arm * moment2_y_by_3_arm;
-        let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
-        let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
-        let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::mass(pivot_3)?;
-        let inv_pivot_3 = 1.0 / pivot_3;
-        let tau_3_arm = joint_velocities[2] * parameters[28]
-            + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let t2 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
-            - l_3_2 * t1;
-        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
-        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
-            + minus_d3_force3_z_by_4_arm;
-        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
-            + c2_arm * moment2_y_by_4_arm;
-        let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
-        let moment2_z_by_4_arm = moment3_z_by_4_arm
-            - s3_arm * minus_d3_force3_x_by_4_arm;
-        let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
-        let l_4_2 = schur_2_4 * inv_pivot_2;
-        let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
-            - schur_2_3 * l_4_2;
-        let l_4_3 = schur_3_4 * inv_pivot_3;
-        let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
-        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
-            - schur_3_4 * l_4_3;
-        ::overact::guard::mass(pivot_4)?;
-        let inv_pivot_4 = 1.0 / pivot_4;
-        let tau_4_arm = joint_velocities[3] * parameters[42]
-            + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let t3 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
-            - l_4_2 * t1 - l_4_3 * t2;
-        let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
-        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
-        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
-            + d3_force3_z_by_5_arm;
-        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
-            - s3_arm * moment4_z_by_5_arm;
-        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
-            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
-        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
-            + c2_arm * moment2_y_by_5_arm;
-        let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
-        let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
-        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
-            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
-        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
-            - s3_arm * minus_force3_x_by_5_arm;
-        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
-        let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
-        let l_5_2 = schur_2_5 * inv_pivot_2;
-        let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
-            - schur_2_3 * l_5_2;
-        let l_5_3 = schur_3_5 * inv_pivot_3;
-        let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
-            - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
-        let l_5_4 = schur_4_5 * inv_pivot_4;
-        let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
-        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
-            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
-        ::overact::guard::mass(pivot_5)?;
-        let inv_pivot_5 = 1.0 / pivot_5;
-        let tau_5_arm = joint_velocities[4] * parameters[56]
-            + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let t4 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
-            - l_5_2 * t1 - l_5_3 * t2 - l_5_4 * t3;
-        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * parameters[64];
-        let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
-        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
-            - s4_arm * minus_force4_x_by_6_arm;
-        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
-        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
-            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * parameters[64];
-        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
-            - s3_arm * moment4_z_by_6_arm;
-        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
-            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
-        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
-            + c2_arm * moment2_y_by_6_arm;
-        let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
-        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
-            + s4_arm * minus_force5_z_by_6_arm;
-        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
-            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
-        let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
-        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
-            + c3_arm * minus_force4_z_by_6_arm;
-        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
-        let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
-        let l_6_2 = schur_2_6 * inv_pivot_2;
-        let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
-            - schur_2_3 * l_6_2;
-        let l_6_3 = schur_3_6 * inv_pivot_3;
-        let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
-            - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
-        let l_6_4 = schur_4_6 * inv_pivot_4;
-        let minus_schur_5_6 = minus_moment5_z_by_6_arm + moment1_z_by_5_arm * l_6_1
-            + schur_2_5 * l_6_2 + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
-        let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
-        let tau_6_arm = joint_velocities[5] * parameters[70]
-            + ::overact::math::signed(parameters[71], joint_velocities[5])
-            + parameters[72];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        let t5 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
-            - l_6_2 * t1 - l_6_3 * t2 - l_6_4 * t3 + minus_l_6_5 * t4;
-        let masses_arm_6_6 = parameters[64] + parameters[69];
-        let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1 - schur_2_6 * l_6_2
-            - schur_3_6 * l_6_3 - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
-        ::overact::guard::mass(pivot_6)?;
-        let t6 = t5 / pivot_6;
-        let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
-        let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
-        let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-        let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7 - l_6_2 * t6;
-        let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10 - l_3_1 * t9
-            - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
-        ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            /// d3²
+            const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+            /// 2 d3
+            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+            let mass5_arm = parameters[54] + parameters[68];
+            let mass4_arm = parameters[40] + mass5_arm;
+            let mass3_arm = parameters[26] + mass4_arm;
+            let d3_squared_mass3_arm = D3_SQUARED * mass3_arm;
+            let t1_arm = parameters[5] - (parameters[8] + d3_squared_mass3_arm);
+            let zz_2_plus_d3_squared_mass3_arm = parameters[10]
+                + d3_squared_mass3_arm;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+            let twice_xy_2 = parameters[6] + parameters[6];
+            let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+            let mz_4_plus_d3_mass4_arm = parameters[39] + D3 * mass4_arm;
+            let t2_arm = D3 * (parameters[39] + mz_4_plus_d3_mass4_arm);
+            let t3_arm = parameters[34] + t2_arm;
+            let t4_arm = parameters[17] + t3_arm - parameters[20];
+            let t5_arm = parameters[22] + t3_arm;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+            let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+            let t6_arm = mz_4_plus_d3_mass4_arm + parameters[24];
+            let t7_arm = bias_wd3_x_arm * (t4_arm + t5_arm)
+                - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
+                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+                + bias_a3_z_arm * t6_arm;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let t8_arm = parameters[31] + parameters[48] - parameters[34];
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
+                + joint_velocities[3] * w4_x_arm;
+            let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let t9_arm = bias_wd4_x_arm * t8_arm
+                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+                - parameters[32] * bias_u4_zx_arm
+                - parameters[33] * minus_bias_u4_yx_arm
+                + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+            let bias_a2_y_arm = 9.81 * c2_arm;
+            let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
+                + D3 * bias_u2_xy_arm;
+            let bias_a2_x_arm = 9.81 * s2_arm;
+            let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm
+                - D3 * minus_bias_u2_xx_arm;
+            let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+                - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
+                - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let t10_arm = parameters[45] + parameters[62] - parameters[48];
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+                + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+            let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t11_arm = bias_wd5_x_arm * t10_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+                - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
+                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+            let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+                + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+            let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
+                + D3 * bias_u3_xy_arm;
+            let t12_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+            let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                + c4_arm * t12_arm;
+            let first5_y_arm = parameters[52] + parameters[67];
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
+                + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
+            let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let t13_arm = bias_wd6_x_arm * xx_6_minus_yy_6
+                - parameters[64] * minus_w6_y_w6_z_arm
+                - parameters[60] * bias_u6_zx_arm
+                - parameters[61] * minus_bias_u6_yx_arm
+                + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+            let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                - s4_arm * t12_arm;
+            let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+            let moment6_x_arm = t13_arm + parameters[66] * bias_a5_y_arm;
+            let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+            let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+            let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+                + parameters[60] * bias_u6_zy_arm
+                + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+                - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+            let moment5_x_arm = t11_arm + bias_a5_z_arm * first5_y_arm
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let t14_arm = w5_x_w5_z_arm * (t10_arm - zz_5_plus_yy_6)
+                + parameters[46] * bias_u5_zy_arm
+                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+                - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+            let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+            let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+            let t15_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+                - parameters[64] * minus_bias_wd5_y_arm
+                + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
+                + parameters[61] * minus_bias_u6_yz_arm
+                + parameters[63] * bias_u6_xz_arm;
+            let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+            let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
+                + c6_arm * bias_a5_z_arm;
+            let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+            let moment6_z_arm = t15_arm
+                - (parameters[65] * minus_bias_a6_y_arm
+                    + parameters[66] * bias_a6_x_arm);
+            let moment5_y_arm = t14_arm + moment6_z_arm;
+            let moment4_x_arm = t9_arm + bias_a4_z_arm * my_4_minus_mz_5
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let t16_arm = w4_x_w4_z_arm * (t8_arm - zz_4_plus_yy_5)
+                + parameters[32] * bias_u4_zy_arm
+                + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+                - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+            let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+            let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+            let t17_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t10_arm
+                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+                - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
+            let moment5_z_arm = t17_arm + parameters[51] * bias_a5_y_arm
+                - bias_a5_x_arm * first5_y_arm
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t16_arm - moment5_z_arm;
+            let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+            let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+            let force6_x_arm = parameters[66] * bias_u6_xy_arm
+                - parameters[65] * minus_bias_u6_xx_arm;
+            let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+            let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+                + parameters[66] * minus_bias_u6_yy_arm;
+            let force5_x_arm = bias_u5_xy_arm * first5_y_arm
+                - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                + s6_arm * minus_force6_y_arm;
+            let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let force6_z_arm = parameters[65] * bias_u6_zx_arm
+                + parameters[66] * bias_u6_zy_arm;
+            let force5_y_arm = parameters[51] * bias_u5_yx_arm
+                - minus_bias_u5_yy_arm * first5_y_arm + force6_z_arm;
+            let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
+                - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - s5_arm * force5_y_arm;
+            let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let force5_z_arm = parameters[51] * bias_u5_zx_arm
+                + bias_u5_zy_arm * first5_y_arm
+                - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+            let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+                + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                - c4_arm * minus_force4_y_arm;
+            let moment3_x_arm = t7_arm + c4_arm * moment4_x_arm
+                - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let t18_arm = minus_bias_wd3_y_arm * (t4_arm - t5_arm)
+                + parameters[18] * bias_u3_zy_arm
+                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+                - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+            let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+            let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+            let t19_arm = minus_w4_x_w4_y_arm * t8_arm
+                - minus_bias_wd3_y_arm * zz_4_plus_yy_5
+                + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+                + parameters[33] * minus_bias_u4_yz_arm
+                + parameters[35] * bias_u4_xz_arm;
+            let moment4_z_arm = t19_arm
+                - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t18_arm + moment4_z_arm;
+            let moment2_x_arm = bias_wd2_x_arm
+                * (t1_arm + zz_2_plus_d3_squared_mass3_arm)
+                - minus_bias_wd2_y_arm * twice_xy_2
+                + bias_u2_xy_arm * xz_2_minus_d3_mz_3
+                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+                + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let force3_z_arm = parameters[23] * bias_u3_zx_arm
+                + bias_u3_zy_arm * t6_arm - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = minus_bias_wd2_y_arm
+                * (t1_arm - zz_2_plus_d3_squared_mass3_arm)
+                + bias_wd2_x_arm * twice_xy_2
+                + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+                - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+            let tau_1_arm = joint_velocities[0] * parameters[2]
+                + ::overact::math::wide::signed(parameters[3], joint_velocities[0])
+                + parameters[4];
+            let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
+            let inertia5_yy_arm = parameters[48] + parameters[64];
+            let t20_arm = s6_arm * xx_6_minus_yy_6 + c6_arm * (2.0 * parameters[60]);
+            let t21_arm = s6_arm * t20_arm;
+            let inertia5_xx_arm = parameters[45] + parameters[59] - t21_arm;
+            let moment5_x_by_6_arm = c6_arm * parameters[61]
+                - s6_arm * parameters[63];
+            let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+            let t22_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
+                + c5_arm * (2.0 * inertia5_xy_arm);
+            let t23_arm = s5_arm * t22_arm;
+            let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t23_arm;
+            let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
+            let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t23_arm;
+            let inertia5_zz_arm = zz_5_plus_yy_6 + t21_arm;
+            let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
+            let inertia5_xz_arm = parameters[47]
+                - (c6_arm * t20_arm - parameters[60]);
+            let minus_moment5_z_by_6_arm = s6_arm * parameters[61]
+                + c6_arm * parameters[63];
+            let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+            let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
+                - s5_arm * inertia5_yz_arm;
+            let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+            let t24_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
+                + c4_arm * (2.0 * inertia4_xy_arm);
+            let t25_arm = s4_arm * t24_arm;
+            let minus_force5_z_by_6_arm = c6_arm * parameters[65]
+                - s6_arm * parameters[66];
+            let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
+            let minus_force4_x_by_5_arm = s5_arm * first5_x_arm
+                + c5_arm * first5_y_arm;
+            let t26_arm = t2_arm + TWICE_D3 * minus_force4_x_by_5_arm;
+            let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t25_arm
+                + t26_arm;
+            let inertia4_xz_arm = parameters[33] + c5_arm * t22_arm
+                - inertia5_xy_arm;
+            let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
+                + c5_arm * inertia5_yz_arm;
+            let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
+            let first4_x_arm = parameters[37] + force4_z_by_5_arm;
+            let minus_force5_x_by_6_arm = s6_arm * parameters[65]
+                + c6_arm * parameters[66];
+            let first4_y_arm = my_4_minus_mz_5 + minus_force5_x_by_6_arm;
+            let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
+                - s4_arm * first4_y_arm;
+            let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+            let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
+                - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
+            let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+            let t27_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+                + c3_arm * (2.0 * inertia3_xy_arm);
+            let t28_arm = s3_arm * t27_arm;
+            let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
+            let first3_y_arm = t6_arm + minus_force4_x_by_5_arm;
+            let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+            let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
+            let t29_arm = d3_force2_y_by_3_arm + d3_squared_mass3_arm
+                + d3_force2_y_by_3_arm;
+            let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t28_arm
+                + t29_arm;
+            let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t28_arm;
+            let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
+                + c3_arm * first3_y_arm;
+            let inertia2_xy_arm = parameters[6] + c3_arm * t27_arm - inertia3_xy_arm
+                - D3 * minus_force2_x_by_3_arm;
+            let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+                + s2_arm
+                    * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                        + c2_arm * (2.0 * inertia2_xy_arm));
+            let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
+            ::overact::guard::mass(masses_arm_1_1)?;
+            let inv_pivot_1 = 1.0 / masses_arm_1_1;
+            let minus_force3_x_by_4_arm = s4_arm * first4_x_arm
+                + c4_arm * first4_y_arm;
+            let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
+            let inertia3_xz_arm = parameters[19]
+                - (c4_arm * t24_arm - inertia4_xy_arm);
+            let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
+                - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+            let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+            let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
+                - s3_arm * inertia3_yz_arm;
+            let inertia2_xz_arm = minus_d3_force3_x_by_4_arm + xz_2_minus_d3_mz_3
+                + moment2_x_by_3_arm;
+            let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
+                + c3_arm * inertia3_yz_arm;
+            let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+            let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
+                + c2_arm * inertia2_yz_arm;
+            let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
+            let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t25_arm
+                + t26_arm;
+            let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t29_arm;
+            let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+            let pivot_2 = masses_arm_2_2 - minus_inertia1_yz_arm * l_2_1;
+            ::overact::guard::mass(pivot_2)?;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+                - bias_u2_xy_arm * t1_arm
+                + bias_a2_y_arm * (parameters[11] + D3 * mass3_arm)
+                - parameters[12] * bias_a2_x_arm;
+            let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                + s4_arm * minus_force4_y_arm;
+            let force3_x_arm = bias_u3_xy_arm * t6_arm
+                - parameters[23] * minus_bias_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = parameters[37] * bias_u4_zx_arm
+                + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = parameters[23] * bias_u3_xy_arm
+                - minus_bias_u3_yy_arm * t6_arm + force4_z_arm;
+            let t31_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * t4_arm + parameters[23] * bias_a3_y_arm
+                - bias_a3_x_arm * t6_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let moment3_z_arm = t31_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t30_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm)
+                + moment3_z_arm;
+            let tau_2_arm = joint_velocities[1] * parameters[14]
+                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
+                + parameters[16];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let t1 = torques[1] - force_on_u2_arm
+                - tau1_minus_force_on_u1_arm * l_2_1;
+            let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
+            let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+                + c2_arm * moment2_y_by_3_arm;
+            let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
+            let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
+            let l_3_2 = schur_2_3 * inv_pivot_2;
+            let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
+            let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1
+                - schur_2_3 * l_3_2;
+            ::overact::guard::mass(pivot_3)?;
+            let inv_pivot_3 = 1.0 / pivot_3;
+            let tau_3_arm = joint_velocities[2] * parameters[28]
+                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
+                + parameters[30];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let t2 = torques[2] - force_on_u3_arm
+                - tau1_minus_force_on_u1_arm * l_3_1 - l_3_2 * t1;
+            let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm
+                - s3_arm * inertia4_zz_arm;
+            let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm
+                + c3_arm * inertia4_zz_arm + minus_d3_force3_z_by_4_arm;
+            let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+                + c2_arm * moment2_y_by_4_arm;
+            let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
+            let moment2_z_by_4_arm = moment3_z_by_4_arm
+                - s3_arm * minus_d3_force3_x_by_4_arm;
+            let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
+            let l_4_2 = schur_2_4 * inv_pivot_2;
+            let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
+                - schur_2_3 * l_4_2;
+            let l_4_3 = schur_3_4 * inv_pivot_3;
+            let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
+            let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1
+                - schur_2_4 * l_4_2 - schur_3_4 * l_4_3;
+            ::overact::guard::mass(pivot_4)?;
+            let inv_pivot_4 = 1.0 / pivot_4;
+            let tau_4_arm = joint_velocities[3] * parameters[42]
+                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
+                + parameters[44];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let t3 = torques[3] - force_on_u4_arm
+                - tau1_minus_force_on_u1_arm * l_4_1 - l_4_2 * t1 - l_4_3 * t2;
+            let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
+            let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+            let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm
+                + s4_arm * inertia5_zz_arm + d3_force3_z_by_5_arm;
+            let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+                - s3_arm * moment4_z_by_5_arm;
+            let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+                + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+            let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+                + c2_arm * moment2_y_by_5_arm;
+            let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
+            let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
+            let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+                - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+            let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+                - s3_arm * minus_force3_x_by_5_arm;
+            let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+            let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
+            let l_5_2 = schur_2_5 * inv_pivot_2;
+            let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
+                - schur_2_3 * l_5_2;
+            let l_5_3 = schur_3_5 * inv_pivot_3;
+            let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
+                - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
+            let l_5_4 = schur_4_5 * inv_pivot_4;
+            let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
+            let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1
+                - schur_2_5 * l_5_2 - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
+            ::overact::guard::mass(pivot_5)?;
+            let inv_pivot_5 = 1.0 / pivot_5;
+            let tau_5_arm = joint_velocities[4] * parameters[56]
+                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
+                + parameters[58];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let t4 = torques[4] - force_on_u5_arm
+                - tau1_minus_force_on_u1_arm * l_5_1 - l_5_2 * t1 - l_5_3 * t2
+                - l_5_4 * t3;
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+                - s5_arm * parameters[64];
+            let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
+            let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+                - s4_arm * minus_force4_x_by_6_arm;
+            let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+            let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+                - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+                + c5_arm * parameters[64];
+            let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+                - s3_arm * moment4_z_by_6_arm;
+            let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+                + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+            let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+                + c2_arm * moment2_y_by_6_arm;
+            let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
+            let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+                + s4_arm * minus_force5_z_by_6_arm;
+            let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+                - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+            let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
+            let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+                + c3_arm * minus_force4_z_by_6_arm;
+            let moment2_z_by_6_arm = moment3_z_by_6_arm
+                - D3 * minus_force2_y_by_6_arm;
+            let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
+            let l_6_2 = schur_2_6 * inv_pivot_2;
+            let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
+                - schur_2_3 * l_6_2;
+            let l_6_3 = schur_3_6 * inv_pivot_3;
+            let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
+                - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
+            let l_6_4 = schur_4_6 * inv_pivot_4;
+            let minus_schur_5_6 = minus_moment5_z_by_6_arm
+                + moment1_z_by_5_arm * l_6_1 + schur_2_5 * l_6_2 + schur_3_5 * l_6_3
+                + schur_4_5 * l_6_4;
+            let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
+            let tau_6_arm = joint_velocities[5] * parameters[70]
+                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
+                + parameters[72];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            let t5 = torques[5] - force_on_u6_arm
+                - tau1_minus_force_on_u1_arm * l_6_1 - l_6_2 * t1 - l_6_3 * t2
+                - l_6_4 * t3 + minus_l_6_5 * t4;
+            let masses_arm_6_6 = parameters[64] + parameters[69];
+            let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1
+                - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
+                - minus_schur_5_6 * minus_l_6_5;
+            ::overact::guard::mass(pivot_6)?;
+            let t6 = t5 / pivot_6;
+            let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
+            let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
+            let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+            let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
+                - l_6_2 * t6;
+            let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
+                - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
+            ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+        })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -3466,468 +3743,523 @@ impl Rx90 {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// d3 = rl4
-        const D3: ::core::primitive::f64 = 0.45;
-        /// 2 d3
-        const TWICE_D3: ::core::primitive::f64 = 0.9;
-        // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        // --- arm
-        let w2_y_arm = c2_arm * joint_velocities[0];
-        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let w2_x_arm = s2_arm * joint_velocities[0];
-        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
-        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
-        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
-        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let d3_m_4R = D3 * base_parameters[35];
-        let d3_d3_m_4R = D3 * d3_m_4R;
-        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
-        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
-        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
-        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
-        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
-        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
-        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
-        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t1_arm = bias_wd3_x_arm * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
-            - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
-            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
-            + bias_a3_z_arm * d3_m_4R;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t2_arm = base_parameters[37] * bias_wd4_x_arm
-            - base_parameters[36] * minus_w4_y_w4_z_arm
-            - base_parameters[40] * bias_u4_zx_arm
-            - base_parameters[39] * minus_bias_u4_yx_arm
-            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
-        let bias_a2_y_arm = 9.81 * c2_arm;
-        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
-        let bias_a2_x_arm = 9.81 * s2_arm;
-        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
-        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
-            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
-        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
-            + joint_velocities[4] * w5_y_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
-        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
-        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
-            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t3_arm = base_parameters[43] * bias_wd5_x_arm
-            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
-            + base_parameters[46] * bias_u5_yx_arm
-            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t4_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
-        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
-        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
-            + joint_velocities[5] * w6_x_arm;
-        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t5_arm = base_parameters[49] * bias_wd6_x_arm
-            - base_parameters[48] * minus_w6_y_w6_z_arm
-            - base_parameters[54] * bias_u6_zx_arm
-            - base_parameters[52] * minus_bias_u6_yx_arm
-            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t4_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = t5_arm + base_parameters[57] * bias_a5_y_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
-            + base_parameters[54] * bias_u6_zy_arm
-            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
-            - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
-        let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
-            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-            + base_parameters[45] * bias_u5_zy_arm
-            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
-            - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let t7_arm = base_parameters[49] * minus_w6_x_w6_y_arm
-            - base_parameters[48] * minus_bias_wd5_y_arm
-            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
-            + base_parameters[52] * minus_bias_u6_yz_arm
-            + base_parameters[53] * bias_u6_xz_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = t7_arm
-            - (base_parameters[56] * minus_bias_a6_y_arm
-                + base_parameters[57] * bias_a6_x_arm);
-        let moment5_y_arm = t6_arm + moment6_z_arm;
-        let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
-            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-            + base_parameters[40] * bias_u4_zy_arm
-            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
-            - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t9_arm = base_parameters[42] * bias_wd5_z_arm
-            - base_parameters[43] * w5_x_w5_y_arm
-            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
-            - base_parameters[46] * bias_u5_yz_arm
-            + base_parameters[47] * bias_u5_xz_arm;
-        let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
-            - base_parameters[50] * bias_a5_x_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t8_arm - moment5_z_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
-            - base_parameters[56] * minus_bias_u6_xx_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
-            + base_parameters[57] * minus_bias_u6_yy_arm;
-        let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
-            - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-            + s6_arm * minus_force6_y_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
-            + base_parameters[57] * bias_u6_zy_arm;
-        let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
-            - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
-        let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
-            - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-            - s5_arm * force5_y_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
-            + base_parameters[50] * bias_u5_zy_arm
-            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-        let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
-            + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
-        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
-            - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
-            - D3 * s4_force4_x_plus_c4_force4_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let t10_arm = minus_bias_wd3_y_arm
-            * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-            + base_parameters[32] * bias_u3_zy_arm
-            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-            - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
-            - base_parameters[36] * minus_bias_wd3_y_arm
-            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
-            + base_parameters[39] * minus_bias_u4_yz_arm
-            + base_parameters[38] * bias_u4_xz_arm;
-        let moment4_z_arm = t11_arm
-            - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
-            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t10_arm + moment4_z_arm;
-        let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
-            - (bias_wd2_x_arm * (base_parameters[27] - base_parameters[4])
-                + base_parameters[31] * bias_u2_zx_arm)
-            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
-            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let t12_arm = base_parameters[31] * bias_u2_zy_arm
-            - minus_bias_wd2_y_arm
-                * (yy_2R_plus_d3_d3_m_4R + base_parameters[4] + d3_d3_m_4R)
-            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-            - base_parameters[30] * bias_u2_xy_arm;
-        let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
-            + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = t12_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
-            - D3 * force3_z_arm;
-        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-        let tau_1_arm = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
-        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
-        let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
-            + c6_arm * (2.0 * base_parameters[54]);
-        let t13_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
-        let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t13_arm;
-        let moment5_x_by_6_arm = c6_arm * base_parameters[52]
-            - s6_arm * base_parameters[53];
-        let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
-        let t14_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
-            + c5_arm * (2.0 * inertia5_xy_arm);
-        let t15_arm = s5_arm * t14_arm;
-        let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t15_arm;
-        let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
-        let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t15_arm;
-        let inertia5_zz_arm = base_parameters[42] + t13_arm;
-        let inertia5_xz_arm = base_parameters[46]
-            - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
-        let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
-            + c6_arm * base_parameters[53];
-        let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
-        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
-        let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
-        let t16_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
-            + c4_arm * (2.0 * inertia4_xy_arm);
-        let t17_arm = s4_arm * t16_arm;
-        let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
-            - s6_arm * base_parameters[57];
-        let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
-        let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
-        let first3_y_arm = first4_z_arm + d3_m_4R;
-        let t18_arm = D3 * (first4_z_arm + first3_y_arm);
-        let inertia3_xx_arm = inertia4_xx_arm - t17_arm + t18_arm;
-        let inertia4_xz_arm = base_parameters[39] + c5_arm * t14_arm - inertia5_xy_arm;
-        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
-        let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
-        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * base_parameters[50];
-        let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
-        let minus_first5_z_arm = s6_arm * base_parameters[56]
-            + c6_arm * base_parameters[57];
-        let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
-        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
-        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
-        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
-            - minus_d3_force3_z_by_4_arm;
-        let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
-        let t19_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
-            + c3_arm * (2.0 * inertia3_xy_arm);
-        let t20_arm = s3_arm * t19_arm;
-        let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
-        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
-        let t21_arm = d3_force2_y_by_3_arm + d3_d3_m_4R + d3_force2_y_by_3_arm;
-        let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t20_arm + t21_arm;
-        let inertia2_xx_arm = inertia3_xx_arm - t20_arm;
-        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
-        let inertia2_xy_arm = base_parameters[31] + c3_arm * t19_arm - inertia3_xy_arm
-            - D3 * minus_force2_x_by_3_arm;
-        let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
-            + s2_arm
-                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
-                    + c2_arm * (2.0 * inertia2_xy_arm));
-        ::overact::guard::mass(inertia1_zz_arm)?;
-        let inv_pivot_1 = 1.0 / inertia1_zz_arm;
-        let inertia3_xz_arm = base_parameters[33] - (c4_arm * t16_arm - inertia4_xy_arm);
-        let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
-        let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
-        let moment3_z_by_4_arm = minus_d3_first3_z_arm
-            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-        let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
-        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
-        let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
-            + minus_d3_first3_z_arm;
-        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
-        let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
-        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
-        let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
-        let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t17_arm + t18_arm;
-        let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t21_arm;
-        let pivot_2 = inertia2_zz_arm - minus_inertia1_yz_arm * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
-            + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * d3_m_4R
-            - base_parameters[41] * minus_bias_u3_xx_arm
-            + c4_force4_x_minus_s4_force4_y_arm;
-        let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
-            + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
-            + c5_arm * force5_y_arm;
-        let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
-        let t22_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-            + bias_u2_xy_arm * yy_2R_plus_d3_d3_m_4R
-            + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
-            - base_parameters[26] * bias_a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-        let t23_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
-            + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
-            - D3 * c4_force4_x_minus_s4_force4_y_arm;
-        let moment3_z_arm = t23_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t22_arm + moment3_z_arm;
-        let tau_2_arm = joint_velocities[1] * base_parameters[5]
-            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
-            + base_parameters[7];
-        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-        let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
-        let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
-        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
-            + c2_arm * moment2_y_by_3_arm;
-        let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
-        let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
-        let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::mass(pivot_3)?;
-        let inv_pivot_3 = 1.0 / pivot_3;
-        let tau_3_arm = joint_velocities[2] * base_parameters[9]
-            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
-            + base_parameters[11];
-        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-        let t2 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
-            - l_3_2 * t1;
-        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
-        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
-            + minus_d3_force3_z_by_4_arm;
-        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
-            + c2_arm * moment2_y_by_4_arm;
-        let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
-        let moment2_z_by_4_arm = moment3_z_by_4_arm - s3_arm * minus_d3_first3_z_arm;
-        let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
-        let l_4_2 = schur_2_4 * inv_pivot_2;
-        let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
-            - schur_2_3 * l_4_2;
-        let l_4_3 = schur_3_4 * inv_pivot_3;
-        let tau_4_arm = joint_velocities[3] * base_parameters[13]
-            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
-            + base_parameters[15];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-        let t3 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
-            - l_4_2 * t1 - l_4_3 * t2;
-        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
-        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
-            - schur_3_4 * l_4_3;
-        ::overact::guard::mass(pivot_4)?;
-        let force3_z_by_5_arm = s4_arm * first4_z_arm;
-        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
-        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
-            + d3_force3_z_by_5_arm;
-        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
-            - s3_arm * moment4_z_by_5_arm;
-        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
-            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
-        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
-            + c2_arm * moment2_y_by_5_arm;
-        let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
-        let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
-        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
-            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
-        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
-            - s3_arm * minus_force3_x_by_5_arm;
-        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
-        let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
-        let l_5_2 = schur_2_5 * inv_pivot_2;
-        let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
-            - schur_2_3 * l_5_2;
-        let l_5_3 = schur_3_5 * inv_pivot_3;
-        let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
-            - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
-        let l_5_4 = schur_4_5 / pivot_4;
-        let tau_5_arm = joint_velocities[4] * base_parameters[17]
-            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
-            + base_parameters[19];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-        let t4 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
-            - l_5_2 * t1 - l_5_3 * t2 - l_5_4 * t3;
-        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
-        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
-            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
-        ::overact::guard::mass(pivot_5)?;
-        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-            - s5_arm * base_parameters[48];
-        let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
-        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
-            - s4_arm * minus_force4_x_by_6_arm;
-        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
-        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
-            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-            + c5_arm * base_parameters[48];
-        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
-            - s3_arm * moment4_z_by_6_arm;
-        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
-            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
-        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
-            + c2_arm * moment2_y_by_6_arm;
-        let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
-        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
-            + s4_arm * minus_force5_z_by_6_arm;
-        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
-            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
-        let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
-        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
-            + c3_arm * minus_force4_z_by_6_arm;
-        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
-        let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
-        let l_6_2 = schur_2_6 * inv_pivot_2;
-        let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
-            - schur_2_3 * l_6_2;
-        let l_6_3 = schur_3_6 * inv_pivot_3;
-        let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
-            - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
-        let l_6_4 = schur_4_6 / pivot_4;
-        let minus_schur_5_6 = minus_moment5_z_by_6_arm + moment1_z_by_5_arm * l_6_1
-            + schur_2_5 * l_6_2 + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
-        let minus_l_6_5 = minus_schur_5_6 / pivot_5;
-        let tau_6_arm = joint_velocities[5] * base_parameters[21]
-            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
-            + base_parameters[23];
-        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        let t5 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
-            - l_6_2 * t1 - l_6_3 * t2 - l_6_4 * t3 + minus_l_6_5 * t4;
-        let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
-        let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1 - schur_2_6 * l_6_2
-            - schur_3_6 * l_6_3 - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
-        ::overact::guard::mass(pivot_6)?;
-        let t6 = t5 / pivot_6;
-        let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
-        let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
-        let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-        let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7 - l_6_2 * t6;
-        let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10 - l_3_1 * t9
-            - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
-        ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+        ::overact::widest(#[inline(always)] || {
+            /// d3 = rl4
+            const D3: ::core::primitive::f64 = 0.45;
+            /// 2 d3
+            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            // --- sines and cosines
+            let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            // --- arm
+            let w2_y_arm = c2_arm * joint_velocities[0];
+            let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+            let w2_x_arm = s2_arm * joint_velocities[0];
+            let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+            let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+            let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+            let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+            let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+            let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+            let d3_m_4R = D3 * base_parameters[35];
+            let d3_d3_m_4R = D3 * d3_m_4R;
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+            let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+            let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+            let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+            let t1_arm = bias_wd3_x_arm
+                * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
+                - base_parameters[32] * bias_u3_zx_arm
+                + base_parameters[33] * bias_u3_xy_arm
+                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+                + bias_a3_z_arm * d3_m_4R;
+            let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+            let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+                - joint_velocities[3] * minus_w4_y_arm;
+            let w4_z_arm = w3_y_arm + joint_velocities[3];
+            let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+            let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+            let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
+                + joint_velocities[3] * w4_x_arm;
+            let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+            let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+            let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let t2_arm = base_parameters[37] * bias_wd4_x_arm
+                - base_parameters[36] * minus_w4_y_w4_z_arm
+                - base_parameters[40] * bias_u4_zx_arm
+                - base_parameters[39] * minus_bias_u4_yx_arm
+                + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+            let bias_a2_y_arm = 9.81 * c2_arm;
+            let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
+                + D3 * bias_u2_xy_arm;
+            let bias_a2_x_arm = 9.81 * s2_arm;
+            let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+            let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm
+                - D3 * minus_bias_u2_xx_arm;
+            let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+                - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+            let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+            let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+            let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+            let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
+                - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+            let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+            let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+            let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+                + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+            let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+            let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+            let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let t3_arm = base_parameters[43] * bias_wd5_x_arm
+                + base_parameters[42] * w5_y_w5_z_arm
+                - base_parameters[45] * bias_u5_zx_arm
+                + base_parameters[46] * bias_u5_yx_arm
+                + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+            let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+                + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+            let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
+                + D3 * bias_u3_xy_arm;
+            let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+            let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                + c4_arm * t4_arm;
+            let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+            let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+                - joint_velocities[5] * minus_w6_y_arm;
+            let w6_z_arm = w5_y_arm + joint_velocities[5];
+            let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+            let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+            let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
+                + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
+            let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+            let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+            let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let t5_arm = base_parameters[49] * bias_wd6_x_arm
+                - base_parameters[48] * minus_w6_y_w6_z_arm
+                - base_parameters[54] * bias_u6_zx_arm
+                - base_parameters[52] * minus_bias_u6_yx_arm
+                + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
+            let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
+                - s4_arm * t4_arm;
+            let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+            let moment6_x_arm = t5_arm + base_parameters[57] * bias_a5_y_arm;
+            let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+            let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+            let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+            let moment6_y_arm = w6_x_w6_z_arm
+                * (base_parameters[49] - base_parameters[48])
+                + base_parameters[54] * bias_u6_zy_arm
+                + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+                - base_parameters[53] * bias_u6_xy_arm
+                - base_parameters[56] * bias_a5_y_arm;
+            let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
+                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+            let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+            let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+                + base_parameters[45] * bias_u5_zy_arm
+                + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+                - base_parameters[47] * bias_u5_xy_arm
+                - base_parameters[55] * bias_a5_z_arm;
+            let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+            let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+            let t7_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+                - base_parameters[48] * minus_bias_wd5_y_arm
+                + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
+                + base_parameters[52] * minus_bias_u6_yz_arm
+                + base_parameters[53] * bias_u6_xz_arm;
+            let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+            let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
+                + c6_arm * bias_a5_z_arm;
+            let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+            let moment6_z_arm = t7_arm
+                - (base_parameters[56] * minus_bias_a6_y_arm
+                    + base_parameters[57] * bias_a6_x_arm);
+            let moment5_y_arm = t6_arm + moment6_z_arm;
+            let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
+                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+            let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+            let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+                + base_parameters[40] * bias_u4_zy_arm
+                + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+                - base_parameters[38] * bias_u4_xy_arm
+                - base_parameters[51] * bias_a4_z_arm;
+            let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+            let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+            let t9_arm = base_parameters[42] * bias_wd5_z_arm
+                - base_parameters[43] * w5_x_w5_y_arm
+                + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+                - base_parameters[46] * bias_u5_yz_arm
+                + base_parameters[47] * bias_u5_xz_arm;
+            let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
+                - base_parameters[50] * bias_a5_x_arm
+                - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+            let moment4_y_arm = t8_arm - moment5_z_arm;
+            let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+            let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+            let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+            let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
+                - base_parameters[56] * minus_bias_u6_xx_arm;
+            let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+            let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
+                + base_parameters[57] * minus_bias_u6_yy_arm;
+            let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
+                - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                + s6_arm * minus_force6_y_arm;
+            let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+            let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
+                + base_parameters[57] * bias_u6_zy_arm;
+            let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
+                - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
+            let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
+                - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - s5_arm * force5_y_arm;
+            let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
+                + base_parameters[50] * bias_u5_zy_arm
+                - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+            let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
+                + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+            let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+                - c4_arm * minus_force4_y_arm;
+            let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm
+                - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+            let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let t10_arm = minus_bias_wd3_y_arm
+                * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
+                + base_parameters[32] * bias_u3_zy_arm
+                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+                - base_parameters[34] * bias_u3_xy_arm
+                - base_parameters[41] * bias_a3_z_arm;
+            let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+            let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+            let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+                - base_parameters[36] * minus_bias_wd3_y_arm
+                + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+                + base_parameters[39] * minus_bias_u4_yz_arm
+                + base_parameters[38] * bias_u4_xz_arm;
+            let moment4_z_arm = t11_arm
+                - (base_parameters[51] * bias_a5_z_arm
+                    + base_parameters[44] * bias_a4_x_arm) + s5_arm * moment5_x_arm
+                + c5_arm * moment5_y_arm;
+            let moment3_y_arm = t10_arm + moment4_z_arm;
+            let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
+                - (bias_wd2_x_arm * (base_parameters[27] - base_parameters[4])
+                    + base_parameters[31] * bias_u2_zx_arm)
+                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+                + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+            let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
+            let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+            let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+            let t12_arm = base_parameters[31] * bias_u2_zy_arm
+                - minus_bias_wd2_y_arm
+                    * (yy_2R_plus_d3_d3_m_4R + base_parameters[4] + d3_d3_m_4R)
+                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+                - base_parameters[30] * bias_u2_xy_arm;
+            let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
+                + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = t12_arm + s3_arm * moment3_x_arm
+                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+            let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+            let tau_1_arm = joint_velocities[0] * base_parameters[1]
+                + ::overact::math::wide::signed(
+                    base_parameters[2],
+                    joint_velocities[0],
+                ) + base_parameters[3];
+            let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
+            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
+                + c6_arm * (2.0 * base_parameters[54]);
+            let t13_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
+            let inertia5_xx_arm = base_parameters[43] + base_parameters[49]
+                - t13_arm;
+            let moment5_x_by_6_arm = c6_arm * base_parameters[52]
+                - s6_arm * base_parameters[53];
+            let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
+            let t14_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+                + c5_arm * (2.0 * inertia5_xy_arm);
+            let t15_arm = s5_arm * t14_arm;
+            let inertia4_zz_arm = base_parameters[36] + base_parameters[48]
+                + t15_arm;
+            let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
+            let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t15_arm;
+            let inertia5_zz_arm = base_parameters[42] + t13_arm;
+            let inertia5_xz_arm = base_parameters[46]
+                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
+            let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
+                + c6_arm * base_parameters[53];
+            let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+            let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
+                - s5_arm * inertia5_yz_arm;
+            let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+            let t16_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
+                + c4_arm * (2.0 * inertia4_xy_arm);
+            let t17_arm = s4_arm * t16_arm;
+            let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
+                - s6_arm * base_parameters[57];
+            let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
+            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
+            let first3_y_arm = first4_z_arm + d3_m_4R;
+            let t18_arm = D3 * (first4_z_arm + first3_y_arm);
+            let inertia3_xx_arm = inertia4_xx_arm - t17_arm + t18_arm;
+            let inertia4_xz_arm = base_parameters[39] + c5_arm * t14_arm
+                - inertia5_xy_arm;
+            let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
+                + c5_arm * inertia5_yz_arm;
+            let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm
+                - s5_arm * base_parameters[50];
+            let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
+            let minus_first5_z_arm = s6_arm * base_parameters[56]
+                + c6_arm * base_parameters[57];
+            let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+            let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
+                - s4_arm * first4_y_arm;
+            let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+            let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
+                - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
+            let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+            let t19_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+                + c3_arm * (2.0 * inertia3_xy_arm);
+            let t20_arm = s3_arm * t19_arm;
+            let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+            let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+            let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
+            let t21_arm = d3_force2_y_by_3_arm + d3_d3_m_4R + d3_force2_y_by_3_arm;
+            let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t20_arm
+                + t21_arm;
+            let inertia2_xx_arm = inertia3_xx_arm - t20_arm;
+            let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
+                + c3_arm * first3_y_arm;
+            let inertia2_xy_arm = base_parameters[31] + c3_arm * t19_arm
+                - inertia3_xy_arm - D3 * minus_force2_x_by_3_arm;
+            let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+                + s2_arm
+                    * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                        + c2_arm * (2.0 * inertia2_xy_arm));
+            ::overact::guard::mass(inertia1_zz_arm)?;
+            let inv_pivot_1 = 1.0 / inertia1_zz_arm;
+            let inertia3_xz_arm = base_parameters[33]
+                - (c4_arm * t16_arm - inertia4_xy_arm);
+            let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+            let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
+            let moment3_z_by_4_arm = minus_d3_first3_z_arm
+                - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+            let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+            let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
+                - s3_arm * inertia3_yz_arm;
+            let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
+                + minus_d3_first3_z_arm;
+            let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
+                + c3_arm * inertia3_yz_arm;
+            let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+            let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
+                + c2_arm * inertia2_yz_arm;
+            let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
+            let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t17_arm
+                + t18_arm;
+            let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t21_arm;
+            let pivot_2 = inertia2_zz_arm - minus_inertia1_yz_arm * l_2_1;
+            ::overact::guard::mass(pivot_2)?;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+            let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+                + s4_arm * minus_force4_y_arm;
+            let force3_x_arm = bias_u3_xy_arm * d3_m_4R
+                - base_parameters[41] * minus_bias_u3_xx_arm
+                + c4_force4_x_minus_s4_force4_y_arm;
+            let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
+                + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
+                + c5_arm * force5_y_arm;
+            let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
+                - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
+            let t22_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+                + bias_u2_xy_arm * yy_2R_plus_d3_d3_m_4R
+                + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
+                - base_parameters[26] * bias_a2_x_arm
+                + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+            let t23_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
+                + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
+                - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let moment3_z_arm = t23_arm
+                - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+            let moment2_z_arm = t22_arm + moment3_z_arm;
+            let tau_2_arm = joint_velocities[1] * base_parameters[5]
+                + ::overact::math::wide::signed(
+                    base_parameters[6],
+                    joint_velocities[1],
+                ) + base_parameters[7];
+            let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+            let t1 = torques[1] - force_on_u2_arm
+                - tau1_minus_force_on_u1_arm * l_2_1;
+            let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
+            let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+                + c2_arm * moment2_y_by_3_arm;
+            let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
+            let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
+            let l_3_2 = schur_2_3 * inv_pivot_2;
+            let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
+            let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1
+                - schur_2_3 * l_3_2;
+            ::overact::guard::mass(pivot_3)?;
+            let inv_pivot_3 = 1.0 / pivot_3;
+            let tau_3_arm = joint_velocities[2] * base_parameters[9]
+                + ::overact::math::wide::signed(
+                    base_parameters[10],
+                    joint_velocities[2],
+                ) + base_parameters[11];
+            let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+            let t2 = torques[2] - force_on_u3_arm
+                - tau1_minus_force_on_u1_arm * l_3_1 - l_3_2 * t1;
+            let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm
+                - s3_arm * inertia4_zz_arm;
+            let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm
+                + c3_arm * inertia4_zz_arm + minus_d3_force3_z_by_4_arm;
+            let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+                + c2_arm * moment2_y_by_4_arm;
+            let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
+            let moment2_z_by_4_arm = moment3_z_by_4_arm
+                - s3_arm * minus_d3_first3_z_arm;
+            let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
+            let l_4_2 = schur_2_4 * inv_pivot_2;
+            let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
+                - schur_2_3 * l_4_2;
+            let l_4_3 = schur_3_4 * inv_pivot_3;
+            let tau_4_arm = joint_velocities[3] * base_parameters[13]
+                + ::overact::math::wide::signed(
+                    base_parameters[14],
+                    joint_velocities[3],
+                ) + base_parameters[15];
+            let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+            let t3 = torques[3] - force_on_u4_arm
+                - tau1_minus_force_on_u1_arm * l_4_1 - l_4_2 * t1 - l_4_3 * t2;
+            let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+            let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1
+                - schur_2_4 * l_4_2 - schur_3_4 * l_4_3;
+            ::overact::guard::mass(pivot_4)?;
+            let force3_z_by_5_arm = s4_arm * first4_z_arm;
+            let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+            let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm
+                + s4_arm * inertia5_zz_arm + d3_force3_z_by_5_arm;
+            let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+                - s3_arm * moment4_z_by_5_arm;
+            let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+                + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+            let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+                + c2_arm * moment2_y_by_5_arm;
+            let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
+            let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
+            let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+                - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+            let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+                - s3_arm * minus_force3_x_by_5_arm;
+            let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+            let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
+            let l_5_2 = schur_2_5 * inv_pivot_2;
+            let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
+                - schur_2_3 * l_5_2;
+            let l_5_3 = schur_3_5 * inv_pivot_3;
+            let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
+                - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
+            let l_5_4 = schur_4_5 / pivot_4;
+            let tau_5_arm = joint_velocities[4] * base_parameters[17]
+                + ::overact::math::wide::signed(
+                    base_parameters[18],
+                    joint_velocities[4],
+                ) + base_parameters[19];
+            let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+            let t4 = torques[4] - force_on_u5_arm
+                - tau1_minus_force_on_u1_arm * l_5_1 - l_5_2 * t1 - l_5_3 * t2
+                - l_5_4 * t3;
+            let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+            let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1
+                - schur_2_5 * l_5_2 - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
+            ::overact::guard::mass(pivot_5)?;
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+                - s5_arm * base_parameters[48];
+            let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
+            let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+                - s4_arm * minus_force4_x_by_6_arm;
+            let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+            let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+                - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+                + c5_arm * base_parameters[48];
+            let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+                - s3_arm * moment4_z_by_6_arm;
+            let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+                + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+            let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+                + c2_arm * moment2_y_by_6_arm;
+            let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
+            let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+                + s4_arm * minus_force5_z_by_6_arm;
+            let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+                - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+            let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
+            let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+                + c3_arm * minus_force4_z_by_6_arm;
+            let moment2_z_by_6_arm = moment3_z_by_6_arm
+                - D3 * minus_force2_y_by_6_arm;
+            let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
+            let l_6_2 = schur_2_6 * inv_pivot_2;
+            let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
+                - schur_2_3 * l_6_2;
+            let l_6_3 = schur_3_6 * inv_pivot_3;
+            let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
+                - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
+            let l_6_4 = schur_4_6 / pivot_4;
+            let minus_schur_5_6 = minus_moment5_z_by_6_arm
+                + moment1_z_by_5_arm * l_6_1 + schur_2_5 * l_6_2 + schur_3_5 * l_6_3
+                + schur_4_5 * l_6_4;
+            let minus_l_6_5 = minus_schur_5_6 / pivot_5;
+            let tau_6_arm = joint_velocities[5] * base_parameters[21]
+                + ::overact::math::wide::signed(
+                    base_parameters[22],
+                    joint_velocities[5],
+                ) + base_parameters[23];
+            let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+            let t5 = torques[5] - force_on_u6_arm
+                - tau1_minus_force_on_u1_arm * l_6_1 - l_6_2 * t1 - l_6_3 * t2
+                - l_6_4 * t3 + minus_l_6_5 * t4;
+            let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
+            let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1
+                - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
+                - minus_schur_5_6 * minus_l_6_5;
+            ::overact::guard::mass(pivot_6)?;
+            let t6 = t5 / pivot_6;
+            let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
+            let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
+            let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+            let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
+                - l_6_2 * t6;
+            let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
+                - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
+            ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+        })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///

@@ -467,6 +467,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -501,7 +503,7 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
@@ -515,18 +517,16 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
@@ -598,6 +598,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -634,13 +636,12 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
@@ -651,13 +652,12 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
@@ -941,121 +941,131 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_rate_2_leg1 = k_leg1
-            * (l1_x_leg1 * twist[1] + minus_l1_y_leg1 * twist[0]);
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_x_leg1 * acceleration[1] - l2_y_leg1 * acceleration[0]
-            + L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = k_leg1 * (l2_x_leg1 * twist[1] - l2_y_leg1 * twist[0]);
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let minus_a_on_f2_leg1 = l1_x_leg1 * acceleration[1]
-            + minus_l1_y_leg1 * acceleration[0] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (minus_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_qdd_2_leg1 = rate_dot_1_leg1 + minus_rate_dot_2_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = 1.0 / det_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let t2_leg2 = 0.8660254037844386 * acceleration[0];
-        let half_dvy = 0.5 * acceleration[1];
-        let t3_leg2 = t2_leg2 + half_dvy;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let half_dvx = 0.5 * acceleration[0];
-        let t4_leg2 = 0.8660254037844386 * acceleration[1];
-        let t5_leg2 = half_dvx - t4_leg2;
-        let t6_leg2 = 0.8660254037844386 * twist[0];
-        let half_vy = 0.5 * twist[1];
-        let t7_leg2 = t6_leg2 + half_vy;
-        let half_vx = 0.5 * twist[0];
-        let t8_leg2 = 0.8660254037844386 * twist[1];
-        let t9_leg2 = half_vx - t8_leg2;
-        let rate_2_leg2 = k_leg2 * (l1_x_leg2 * t7_leg2 - l1_y_leg2 * t9_leg2);
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_l2_x_leg2 * t3_leg2 + l2_y_leg2 * t5_leg2
-            + L_1_SQUARED * rate_2_squared_leg2;
-        let rate_1_leg2 = k_leg2 * (minus_l2_x_leg2 * t7_leg2 + l2_y_leg2 * t9_leg2);
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let t10_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg2 = k_leg2 * (a_on_f1_leg2 + rate_1_squared_leg2 * t10_leg2);
-        let a_on_f2_leg2 = l1_x_leg2 * t3_leg2 - l1_y_leg2 * t5_leg2
-            - L_1_SQUARED * rate_1_squared_leg2;
-        let rate_dot_2_leg2 = k_leg2 * (a_on_f2_leg2 - rate_2_squared_leg2 * t10_leg2);
-        let qdd_2_leg2 = rate_dot_2_leg2 - rate_dot_1_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = 1.0 / det_leg3;
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let t2_leg3 = t2_leg2 - half_dvy;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let t3_leg3 = half_dvx + t4_leg2;
-        let t4_leg3 = t6_leg2 - half_vy;
-        let t5_leg3 = half_vx + t8_leg2;
-        let minus_rate_2_leg3 = k_leg3 * (l1_x_leg3 * t4_leg3 + l1_y_leg3 * t5_leg3);
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let a_on_f1_leg3 = l2_x_leg3 * t2_leg3 + l2_y_leg3 * t3_leg3
-            + L_1_SQUARED * rate_2_squared_leg3;
-        let rate_1_leg3 = k_leg3 * (l2_x_leg3 * t4_leg3 + l2_y_leg3 * t5_leg3);
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t6_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_leg3 * t6_leg3);
-        let minus_a_on_f2_leg3 = l1_x_leg3 * t2_leg3 + l1_y_leg3 * t3_leg3
-            + L_1_SQUARED * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * t6_leg3);
-        let minus_qdd_2_leg3 = rate_dot_1_leg3 + minus_rate_dot_2_leg3;
-        ::core::result::Result::Ok([
-            rate_dot_1_leg1, -minus_qdd_2_leg1, rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
-            -minus_qdd_2_leg3,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_rate_2_leg1 = k_leg1
+                * (l1_x_leg1 * twist[1] + minus_l1_y_leg1 * twist[0]);
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_x_leg1 * acceleration[1]
+                - l2_y_leg1 * acceleration[0] + L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = k_leg1 * (l2_x_leg1 * twist[1] - l2_y_leg1 * twist[0]);
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            let minus_a_on_f2_leg1 = l1_x_leg1 * acceleration[1]
+                + minus_l1_y_leg1 * acceleration[0]
+                + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (minus_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_qdd_2_leg1 = rate_dot_1_leg1 + minus_rate_dot_2_leg1;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = 1.0 / det_leg2;
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let t2_leg2 = 0.8660254037844386 * acceleration[0];
+            let half_dvy = 0.5 * acceleration[1];
+            let t3_leg2 = t2_leg2 + half_dvy;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let half_dvx = 0.5 * acceleration[0];
+            let t4_leg2 = 0.8660254037844386 * acceleration[1];
+            let t5_leg2 = half_dvx - t4_leg2;
+            let t6_leg2 = 0.8660254037844386 * twist[0];
+            let half_vy = 0.5 * twist[1];
+            let t7_leg2 = t6_leg2 + half_vy;
+            let half_vx = 0.5 * twist[0];
+            let t8_leg2 = 0.8660254037844386 * twist[1];
+            let t9_leg2 = half_vx - t8_leg2;
+            let rate_2_leg2 = k_leg2 * (l1_x_leg2 * t7_leg2 - l1_y_leg2 * t9_leg2);
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_l2_x_leg2 * t3_leg2 + l2_y_leg2 * t5_leg2
+                + L_1_SQUARED * rate_2_squared_leg2;
+            let rate_1_leg2 = k_leg2
+                * (minus_l2_x_leg2 * t7_leg2 + l2_y_leg2 * t9_leg2);
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let t10_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 + rate_1_squared_leg2 * t10_leg2);
+            let a_on_f2_leg2 = l1_x_leg2 * t3_leg2 - l1_y_leg2 * t5_leg2
+                - L_1_SQUARED * rate_1_squared_leg2;
+            let rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 - rate_2_squared_leg2 * t10_leg2);
+            let qdd_2_leg2 = rate_dot_2_leg2 - rate_dot_1_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = 1.0 / det_leg3;
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let t2_leg3 = t2_leg2 - half_dvy;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let t3_leg3 = half_dvx + t4_leg2;
+            let t4_leg3 = t6_leg2 - half_vy;
+            let t5_leg3 = half_vx + t8_leg2;
+            let minus_rate_2_leg3 = k_leg3
+                * (l1_x_leg3 * t4_leg3 + l1_y_leg3 * t5_leg3);
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let a_on_f1_leg3 = l2_x_leg3 * t2_leg3 + l2_y_leg3 * t3_leg3
+                + L_1_SQUARED * rate_2_squared_leg3;
+            let rate_1_leg3 = k_leg3 * (l2_x_leg3 * t4_leg3 + l2_y_leg3 * t5_leg3);
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let t6_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * t6_leg3);
+            let minus_a_on_f2_leg3 = l1_x_leg3 * t2_leg3 + l1_y_leg3 * t3_leg3
+                + L_1_SQUARED * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * t6_leg3);
+            let minus_qdd_2_leg3 = rate_dot_1_leg3 + minus_rate_dot_2_leg3;
+            ::core::result::Result::Ok([
+                rate_dot_1_leg1, -minus_qdd_2_leg1, rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
+                -minus_qdd_2_leg3,
+            ])
+        })
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
@@ -1078,6 +1088,8 @@ impl ThreeLegPoint {
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -1112,7 +1124,7 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
@@ -1126,7 +1138,7 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
@@ -1144,11 +1156,9 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * actuator_velocities[2];
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
@@ -1190,135 +1200,146 @@ impl ThreeLegPoint {
                 ("actuator_accelerations", actuator_accelerations),
             ],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let inv_det_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * inv_det_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let t2_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k1_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = t2_leg2 * k1_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let t2_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k1_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = t2_leg3 * k1_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        // --- leg2
-        let t3_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_fk2_x_leg2 = k1_leg2 * v2_by_1_y_leg2;
-        let t4_leg2 = t2_leg2 * twist[0] - t3_leg2 * twist[1];
-        let t5_leg2 = minus_fk2_x_leg2 * t4_leg2;
-        let t6_leg2 = t3_leg2 * twist[0] + t2_leg2 * twist[1] - t5_leg2;
-        let bias_a_on_f1_leg2 = INV_L_1 * (t6_leg2 * t6_leg2);
-        let rate_1_leg2 = k1_leg2 * t4_leg2;
-        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 + t5_leg2 * rate_1_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let k1_leg1 = L_1 * inv_det_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let c12_leg1 = INV_L_1 * l2_x_leg1;
-        let s12_leg1 = INV_L_1 * l2_y_leg1;
-        let rate_1_leg1 = k1_leg1 * (c12_leg1 * twist[1] - s12_leg1 * twist[0]);
-        let v2_by_1_y_rate_1_leg1 = v2_by_1_y_leg1 * rate_1_leg1;
-        let t1_leg1 = v2_by_1_y_rate_1_leg1 + c12_leg1 * twist[0] + s12_leg1 * twist[1];
-        let bias_a_on_f1_leg1 = INV_L_1 * (t1_leg1 * t1_leg1);
-        let bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 + v2_by_1_y_rate_1_leg1 * rate_1_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let t3_leg3 = 2.0833333333333335 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_leg3 = k1_leg3 * (t2_leg3 * twist[0] - t3_leg3 * twist[1]);
-        let v2_by_1_y_rate_1_leg3 = v2_by_1_y_leg3 * rate_1_leg3;
-        let t4_leg3 = t3_leg3 * twist[0] + t2_leg3 * twist[1] - v2_by_1_y_rate_1_leg3;
-        let bias_a_on_f1_leg3 = INV_L_1 * (t4_leg3 * t4_leg3);
-        let bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 + v2_by_1_y_rate_1_leg3 * rate_1_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t1 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let g1_vy_leg1 = l2_x_leg1 * inv_det_leg1;
-        let minus_g1_vy_leg2 = t3_leg2 * k1_leg2;
-        let minus_g1_vy_leg3 = t3_leg3 * k1_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t1)
-            / pivot_2;
-        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let inv_det_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * inv_det_leg1;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let t2_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k1_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = t2_leg2 * k1_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let t2_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k1_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = t2_leg3 * k1_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            // --- leg2
+            let t3_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_fk2_x_leg2 = k1_leg2 * v2_by_1_y_leg2;
+            let t4_leg2 = t2_leg2 * twist[0] - t3_leg2 * twist[1];
+            let t5_leg2 = minus_fk2_x_leg2 * t4_leg2;
+            let t6_leg2 = t3_leg2 * twist[0] + t2_leg2 * twist[1] - t5_leg2;
+            let bias_a_on_f1_leg2 = INV_L_1 * (t6_leg2 * t6_leg2);
+            let rate_1_leg2 = k1_leg2 * t4_leg2;
+            let bias_rate_dot_1_leg2 = k1_leg2
+                * (bias_a_on_f1_leg2 + t5_leg2 * rate_1_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let k1_leg1 = L_1 * inv_det_leg1;
+            let v2_by_1_y_leg1 = INV_TWICE_L_1
+                * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let c12_leg1 = INV_L_1 * l2_x_leg1;
+            let s12_leg1 = INV_L_1 * l2_y_leg1;
+            let rate_1_leg1 = k1_leg1 * (c12_leg1 * twist[1] - s12_leg1 * twist[0]);
+            let v2_by_1_y_rate_1_leg1 = v2_by_1_y_leg1 * rate_1_leg1;
+            let t1_leg1 = v2_by_1_y_rate_1_leg1 + c12_leg1 * twist[0]
+                + s12_leg1 * twist[1];
+            let bias_a_on_f1_leg1 = INV_L_1 * (t1_leg1 * t1_leg1);
+            let bias_rate_dot_1_leg1 = k1_leg1
+                * (bias_a_on_f1_leg1 + v2_by_1_y_rate_1_leg1 * rate_1_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let t3_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_leg3 = k1_leg3 * (t2_leg3 * twist[0] - t3_leg3 * twist[1]);
+            let v2_by_1_y_rate_1_leg3 = v2_by_1_y_leg3 * rate_1_leg3;
+            let t4_leg3 = t3_leg3 * twist[0] + t2_leg3 * twist[1]
+                - v2_by_1_y_rate_1_leg3;
+            let bias_a_on_f1_leg3 = INV_L_1 * (t4_leg3 * t4_leg3);
+            let bias_rate_dot_1_leg3 = k1_leg3
+                * (bias_a_on_f1_leg3 + v2_by_1_y_rate_1_leg3 * rate_1_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t1 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let g1_vy_leg1 = l2_x_leg1 * inv_det_leg1;
+            let minus_g1_vy_leg2 = t3_leg2 * k1_leg2;
+            let minus_g1_vy_leg3 = t3_leg3 * k1_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                + minus_l_2_1 * t1) / pivot_2;
+            ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1342,205 +1363,230 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let half_x = 0.5 * pose[0];
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let inv_l_1_dvx = INV_L_1 * acceleration[0];
-        let inv_l_1_dvy = INV_L_1 * acceleration[1];
-        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let t2_leg1 = ::overact::math::signed(k_leg1, minus_qd_2_leg1);
-        let t1_leg3 = pose[1] * 0.8660254037844386;
-        // --- leg2
-        let d_y_leg2 = half_x - t1_leg3;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let t2_leg3 = INV_L_1 * y_plus_half_radius;
-        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let t3_leg2 = INV_L_1 * t1_leg2;
-        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
-            + minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
-            + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let t4_leg2 = ::overact::math::signed(k_leg2, -minus_qd_2_leg2);
-        // --- leg3
-        let t3_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
-        let d_y_leg3 = half_x + t1_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let t4_leg3 = INV_L_1 * t3_leg3;
-        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
-        ::core::result::Result::Ok([
-            [
-                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
-                zz_2_leg1_on_vx, inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                L_1_SQUARED * zz_1_leg1_on_vx,
-                pose[0] * t2_leg1,
-                -minus_zz_1_leg2_on_vx,
-                -minus_zz_1_leg2_on_vx,
-                g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2,
-                zz_2_leg2_on_vx,
-                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
-                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
-                -(t3_leg2 * t4_leg2),
-                zz_1_leg3_on_vx,
-                zz_1_leg3_on_vx,
-                g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3,
-                zz_2_leg3_on_vx,
-                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                L_1_SQUARED * zz_1_leg3_on_vx,
-                -(t4_leg3 * t5_leg3),
-                acceleration[0],
-            ],
-            [
-                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
-                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_zz_1_leg1_on_vy), d_x_leg1 * t2_leg1, zz_1_leg2_on_vy,
-                zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                zz_2_leg2_on_vy, inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
-                -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
-                L_1_SQUARED * zz_1_leg2_on_vy, -(t2_leg3 * t4_leg2), -minus_zz_1_leg3_on_vy,
-                -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                -(L_1_SQUARED * minus_zz_1_leg3_on_vy), -(t2_leg3 * t5_leg3), acceleration[1],
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let half_x = 0.5 * pose[0];
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            let inv_l_1_dvx = INV_L_1 * acceleration[0];
+            let inv_l_1_dvy = INV_L_1 * acceleration[1];
+            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t2_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = half_x - t1_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let t2_leg3 = INV_L_1 * y_plus_half_radius;
+            let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let t3_leg2 = INV_L_1 * t1_leg2;
+            let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+                + minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
+            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            // --- leg3
+            let t3_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t4_leg3 = INV_L_1 * t3_leg3;
+            let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            ::core::result::Result::Ok([
+                [
+                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    -minus_g1_vx_leg1, zz_2_leg1_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                    L_1_SQUARED * zz_1_leg1_on_vx,
+                    pose[0] * t2_leg1,
+                    -minus_zz_1_leg2_on_vx,
+                    -minus_zz_1_leg2_on_vx,
+                    g1_vx_leg2 * rate_1_leg2,
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
+                    g1_vx_leg2,
+                    zz_2_leg2_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
+                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                    -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
+                    -(t3_leg2 * t4_leg2),
+                    zz_1_leg3_on_vx,
+                    zz_1_leg3_on_vx,
+                    g1_vx_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
+                    g1_vx_leg3,
+                    zz_2_leg3_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                    minus_g2_vx_leg3 * a_on_f1_leg3
+                        + g1_vx_leg3 * minus_a_on_f2_leg3,
+                    L_1_SQUARED * zz_1_leg3_on_vx,
+                    -(t4_leg3 * t5_leg3),
+                    acceleration[0],
+                ],
+                [
+                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
+                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                    d_x_leg1 * t2_leg1,
+                    zz_1_leg2_on_vy,
+                    zz_1_leg2_on_vy,
+                    -(minus_g1_vy_leg2 * rate_1_leg2),
+                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
+                    -minus_g1_vy_leg2,
+                    zz_2_leg2_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
+                    -(minus_g2_vy_leg2 * a_on_f1_leg2
+                        + minus_g1_vy_leg2 * a_on_f2_leg2),
+                    L_1_SQUARED * zz_1_leg2_on_vy,
+                    -(t2_leg3 * t4_leg2),
+                    -minus_zz_1_leg3_on_vy,
+                    -minus_zz_1_leg3_on_vy,
+                    -(minus_g1_vy_leg3 * rate_1_leg3),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
+                    -minus_g1_vy_leg3,
+                    zz_2_leg3_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                    minus_g2_vy_leg3 * a_on_f1_leg3
+                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                    -(t2_leg3 * t5_leg3),
+                    acceleration[1],
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1569,162 +1615,168 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        // --- sines and cosines
-        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg1
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
-        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-        let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let inv_l_1_dvx = INV_L_1 * acceleration[0];
-        let inv_l_1_dvy = INV_L_1 * acceleration[1];
-        let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        // --- leg2
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - c2_leg2 * l_1_rate_1_squared_leg2);
-        let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
-        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        // --- leg3
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
-        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
-        let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-        ::core::result::Result::Ok([
-            [
-                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
-                -minus_zz_2_leg1_on_vx,
-                inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx),
-                g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
-                L_1_SQUARED * zz_1_leg1_on_vx, ::overact::math::signed(gq2_vx_leg1, qd_2_leg1),
-                -minus_zz_1_leg2_on_vx, -minus_zz_1_leg2_on_vx, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, zz_2_leg2_on_vx,
-                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
-                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2), zz_1_leg3_on_vx,
-                zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
-                -minus_zz_2_leg3_on_vx,
-                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx),
-                minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
-                L_1_SQUARED * zz_1_leg3_on_vx,
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3), acceleration[0],
-            ],
-            [
-                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
-                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
-                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                -::overact::math::signed(minus_gq2_vy_leg1, qd_2_leg1), zz_1_leg2_on_vy,
-                zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -minus_zz_2_leg2_on_vy,
-                inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
-                g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
-                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
-                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            // --- sines and cosines
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg1
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+            let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+            let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            let inv_l_1_dvx = INV_L_1 * acceleration[0];
+            let inv_l_1_dvy = INV_L_1 * acceleration[1];
+            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - c2_leg2 * l_1_rate_1_squared_leg2);
+            let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
+            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
+            let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
+            let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
+            let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
+            ::core::result::Result::Ok([
+                [
+                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    -minus_g1_vx_leg1, -minus_zz_2_leg1_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx),
+                    g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
+                    L_1_SQUARED * zz_1_leg1_on_vx,
+                    ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1), -minus_zz_1_leg2_on_vx,
+                    -minus_zz_1_leg2_on_vx, g1_vx_leg2 * rate_1_leg2,
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
+                    zz_2_leg2_on_vx, inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
+                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                    -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
+                    -::overact::math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2), zz_1_leg3_on_vx,
+                    zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
+                    -minus_zz_2_leg3_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx),
+                    minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
+                    L_1_SQUARED * zz_1_leg3_on_vx,
+                    -::overact::math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3), acceleration[0],
+                ],
+                [
+                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
+                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                    g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
+                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                    -::overact::math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1), zz_1_leg2_on_vy,
+                    zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
+                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
+                    -minus_g1_vy_leg2, -minus_zz_2_leg2_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
+                    g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
+                    L_1_SQUARED * zz_1_leg2_on_vy,
+                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2), -minus_zz_1_leg3_on_vy,
+                    -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
+                    -minus_g1_vy_leg3, zz_2_leg3_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                    minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
+                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                    ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1755,256 +1807,285 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let half_x = 0.5 * pose[0];
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        // --- leg2
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t1_leg3 = y_plus_half_radius * INV_L_1;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
-        let d_y_leg3 = pose[0] - d_y_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let vy = (g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        let t3_leg2 = t1_leg2 * INV_L_1;
-        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
-        // --- leg2
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let t3_leg3 = t2_leg3 * INV_L_1;
-        let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
-            / pivot_2;
-        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-        // --- leg1
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let inv_l_1_dvx = INV_L_1 * dvx;
-        let inv_l_1_dvy = INV_L_1 * dvy;
-        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let t3_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
-        // --- leg2
-        let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
-        let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
-        let rate_dot_1_leg2 = k_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
-        let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let t4_leg2 = ::overact::math::signed(k_leg2, qd_2_leg2);
-        // --- leg3
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-            + minus_bias_a_on_f2_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let t4_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
-        ::core::result::Result::Ok([
-            [
-                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
-                zz_2_leg1_on_vx, inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                L_1_SQUARED * zz_1_leg1_on_vx,
-                pose[0] * t3_leg1,
-                zz_1_leg2_on_vx,
-                zz_1_leg2_on_vx,
-                g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2,
-                zz_2_leg2_on_vx,
-                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx),
-                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                L_1_SQUARED * zz_1_leg2_on_vx,
-                -(t3_leg2 * t4_leg2),
-                zz_1_leg3_on_vx,
-                zz_1_leg3_on_vx,
-                g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3,
-                zz_2_leg3_on_vx,
-                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                L_1_SQUARED * zz_1_leg3_on_vx,
-                -(t3_leg3 * t4_leg3),
-                dvx,
-            ],
-            [
-                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
-                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_zz_1_leg1_on_vy), d_x_leg1 * t3_leg1, zz_1_leg2_on_vy,
-                zz_1_leg2_on_vy, g1_vy_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vy_leg2, rate_1_leg2), g1_vy_leg2,
-                -minus_zz_2_leg2_on_vy,
-                inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
-                g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
-                L_1_SQUARED * zz_1_leg2_on_vy, -(t1_leg3 * t4_leg2), -minus_zz_1_leg3_on_vy,
-                -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                -(L_1_SQUARED * minus_zz_1_leg3_on_vy), -(t1_leg3 * t4_leg3), dvy,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let half_x = 0.5 * pose[0];
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            // --- leg2
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let t1_leg3 = y_plus_half_radius * INV_L_1;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let d_y_leg3 = pose[0] - d_y_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
+                + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let vy = (g1_vy_leg1 * actuator_velocities[0]
+                + g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
+                / pivot_2;
+            let t3_leg2 = t1_leg2 * INV_L_1;
+            let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+            // --- leg2
+            let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t3_leg3 = t2_leg3 * INV_L_1;
+            let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                + minus_l_2_1 * t2) / pivot_2;
+            let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+            // --- leg1
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            let inv_l_1_dvx = INV_L_1 * dvx;
+            let inv_l_1_dvy = INV_L_1 * dvy;
+            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t3_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            // --- leg2
+            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+            let rate_dot_1_leg2 = k_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
+            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            // --- leg3
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            ::core::result::Result::Ok([
+                [
+                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    -minus_g1_vx_leg1, zz_2_leg1_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                    L_1_SQUARED * zz_1_leg1_on_vx,
+                    pose[0] * t3_leg1,
+                    zz_1_leg2_on_vx,
+                    zz_1_leg2_on_vx,
+                    g1_vx_leg2 * rate_1_leg2,
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
+                    g1_vx_leg2,
+                    zz_2_leg2_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx),
+                    g1_vx_leg2 * a_on_f2_leg2
+                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                    L_1_SQUARED * zz_1_leg2_on_vx,
+                    -(t3_leg2 * t4_leg2),
+                    zz_1_leg3_on_vx,
+                    zz_1_leg3_on_vx,
+                    g1_vx_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
+                    g1_vx_leg3,
+                    zz_2_leg3_on_vx,
+                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                    minus_g2_vx_leg3 * a_on_f1_leg3
+                        + g1_vx_leg3 * minus_a_on_f2_leg3,
+                    L_1_SQUARED * zz_1_leg3_on_vx,
+                    -(t3_leg3 * t4_leg3),
+                    dvx,
+                ],
+                [
+                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
+                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                    d_x_leg1 * t3_leg1,
+                    zz_1_leg2_on_vy,
+                    zz_1_leg2_on_vy,
+                    g1_vy_leg2 * rate_1_leg2,
+                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
+                    g1_vy_leg2,
+                    -minus_zz_2_leg2_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
+                    g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
+                    L_1_SQUARED * zz_1_leg2_on_vy,
+                    -(t1_leg3 * t4_leg2),
+                    -minus_zz_1_leg3_on_vy,
+                    -minus_zz_1_leg3_on_vy,
+                    -(minus_g1_vy_leg3 * rate_1_leg3),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
+                    -minus_g1_vy_leg3,
+                    zz_2_leg3_on_vy,
+                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                    minus_g2_vy_leg3 * a_on_f1_leg3
+                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                    -(t1_leg3 * t4_leg3),
+                    dvy,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2028,208 +2109,253 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-            + minus_g2_vy_leg1 * minus_vy_by_a1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-        let g2_a2_leg1 = k_leg1 * inv_det_ja;
-        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
-            + minus_vy_by_a1 * acceleration[1];
-        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
-            + minus_vy_by_a2 * acceleration[1];
-        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
-                INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1), 0.0, 0.0, 0.0, 0.0,
-                0.0, zz_2_leg2_on_q1_leg1, -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
-                -(minus_g2_a1_leg2 * a_on_f1_leg2), 0.0,
-                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2), zz_1_leg3_on_q1_leg1,
-                zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
-                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg1,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1, 0.0,
-                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -minus_zz_2_leg2_on_q1_leg2,
-                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
-                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
-                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg2,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1];
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1];
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
+                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                        - t1_platform,
+                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                    -::overact::math::wide::signed(
+                        g2_a1_leg1 - 1.0,
+                        minus_qd_2_leg1,
+                    ),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    zz_2_leg2_on_q1_leg1,
+                    -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
+                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                    0.0,
+                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg1,
+                    zz_1_leg3_on_q1_leg1,
+                    g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
+                    g1_a1_leg3,
+                    zz_2_leg3_on_q1_leg1,
+                    -(t1_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                    ::overact::math::wide::signed(
+                        g2_a1_leg3 - g1_a1_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg1,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1,
+                    0.0, -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
+                    -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2, rate_1_leg2,
+                    ::overact::math::wide::sign(rate_1_leg2), 1.0, -minus_zz_2_leg2_on_q1_leg2,
+                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
+                        - t2_platform,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg2,
+                    zz_1_leg3_on_q1_leg2,
+                    g1_a2_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
+                    g1_a2_leg3,
+                    zz_2_leg3_on_q1_leg2,
+                    -(t2_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                    ::overact::math::wide::signed(
+                        g2_a2_leg3 - g1_a2_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg2,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2258,166 +2384,206 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        // --- sines and cosines
-        let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
-        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg1
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let v2_by_1_y_leg1 = L_1 * c2_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-        // --- leg2
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.095780524666612,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - g2_vx_leg1 * minus_vx_by_a1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - g2_vx_leg1 * minus_vx_by_a2;
-        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-        // --- platform
-        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
-            + minus_vy_by_a1 * acceleration[1];
-        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
-            + minus_vy_by_a2 * acceleration[1];
-        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        // --- leg2
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = L_1 * c2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        // --- leg3
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = L_1 * c2_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
-                a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1, -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                ::overact::math::signed(g2_a1_leg1 - 1.0, qd_2_leg1), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -minus_zz_2_leg2_on_q1_leg1, L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform,
-                g2_a1_leg2 * a_on_f1_leg2, 0.0, ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
-                zz_1_leg3_on_q1_leg1, zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
-                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg1,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * a_on_f1_leg1, 0.0,
-                ::overact::math::signed(g2_a2_leg1, qd_2_leg1), -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -minus_zz_2_leg2_on_q1_leg2,
-                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
-                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
-                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg2,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            // --- sines and cosines
+            let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg1
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let v2_by_1_y_leg1 = L_1 * c2_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.095780524666612,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - g2_vx_leg1 * minus_vx_by_a2;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            // --- platform
+            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1];
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1];
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = L_1 * c2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
+                - g2_vy_leg2 * minus_vy_by_a1;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = L_1 * c2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
+                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                        - t1_platform,
+                    a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                    ::overact::math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    -minus_zz_2_leg2_on_q1_leg1,
+                    L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform,
+                    g2_a1_leg2 * a_on_f1_leg2,
+                    0.0,
+                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg1,
+                    zz_1_leg3_on_q1_leg1,
+                    g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
+                    g1_a1_leg3,
+                    zz_2_leg3_on_q1_leg1,
+                    -(t1_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                    ::overact::math::wide::signed(
+                        g2_a1_leg3 - g1_a1_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg1,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * a_on_f1_leg1, 0.0,
+                    ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1), -minus_rate_dot_1_leg2,
+                    -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::wide::sign(rate_1_leg2),
+                    1.0, -minus_zz_2_leg2_on_q1_leg2,
+                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
+                        - t2_platform,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg2,
+                    zz_1_leg3_on_q1_leg2,
+                    g1_a2_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
+                    g1_a2_leg3,
+                    zz_2_leg3_on_q1_leg2,
+                    -(t2_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                    ::overact::math::wide::signed(
+                        g2_a2_leg3 - g1_a2_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg2,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2448,260 +2614,312 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let vy = inv_pivot_2
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-        // --- leg2
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = inv_pivot_2
-            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
-        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-            + minus_g2_vy_leg1 * minus_vy_by_a1;
-        // --- leg1
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-        let g2_a2_leg1 = k_leg1 * inv_det_ja;
-        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy;
-        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy;
-        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-        // --- leg2
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        // --- leg3
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
-            - minus_bias_a_on_f2_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
-                INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1), 0.0, 0.0, 0.0, 0.0,
-                0.0, zz_2_leg2_on_q1_leg1, -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
-                -(minus_g2_a1_leg2 * a_on_f1_leg2), 0.0,
-                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2), zz_1_leg3_on_q1_leg1,
-                zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
-                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg1,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1, 0.0,
-                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -minus_zz_2_leg2_on_q1_leg2,
-                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
-                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
-                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                -minus_m_platform_on_q1_leg2,
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let vy = inv_pivot_2
+                * (g1_vy_leg1 * actuator_velocities[0]
+                    - minus_g1_vy_leg2 * actuator_velocities[1]
+                    - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+            // --- leg2
+            let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = inv_pivot_2
+                * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                    - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                    - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                    + minus_l_2_1 * t2);
+            let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            // --- leg1
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
+                + minus_vy_by_a1 * dvy;
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
+                + minus_vy_by_a2 * dvy;
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            // --- leg2
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            // --- leg3
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+                - minus_bias_a_on_f2_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
+                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                        - t1_platform,
+                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                    -::overact::math::wide::signed(
+                        g2_a1_leg1 - 1.0,
+                        minus_qd_2_leg1,
+                    ),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    zz_2_leg2_on_q1_leg1,
+                    -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
+                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                    0.0,
+                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg1,
+                    zz_1_leg3_on_q1_leg1,
+                    g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
+                    g1_a1_leg3,
+                    zz_2_leg3_on_q1_leg1,
+                    -(t1_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                    ::overact::math::wide::signed(
+                        g2_a1_leg3 - g1_a1_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg1,
+                ],
+                [
+                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1,
+                    0.0, -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
+                    -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2, rate_1_leg2,
+                    ::overact::math::wide::sign(rate_1_leg2), 1.0, -minus_zz_2_leg2_on_q1_leg2,
+                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
+                        - t2_platform,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    zz_1_leg3_on_q1_leg2,
+                    zz_1_leg3_on_q1_leg2,
+                    g1_a2_leg3 * rate_1_leg3,
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
+                    g1_a2_leg3,
+                    zz_2_leg3_on_q1_leg2,
+                    -(t2_platform
+                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                    ::overact::math::wide::signed(
+                        g2_a2_leg3 - g1_a2_leg3,
+                        qd_2_leg3,
+                    ),
+                    -minus_m_platform_on_q1_leg2,
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2725,176 +2943,194 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let half_x = 0.5 * pose[0];
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let t1_leg3 = pose[1] * 0.8660254037844386;
-        // --- leg2
-        let d_y_leg2 = half_x - t1_leg3;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let t2_leg3 = y_plus_half_radius * INV_L_1;
-        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let t3_leg2 = t1_leg2 * INV_L_1;
-        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
-            + minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        // --- leg3
-        let t3_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
-        let d_y_leg3 = half_x + t1_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let t4_leg3 = t3_leg3 * INV_L_1;
-        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
-            + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        // --- leg1
-        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let t2_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let t4_leg2 = ::overact::math::signed(k_leg2, -minus_qd_2_leg2);
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
-        ::core::result::Result::Ok([
-            [
-                acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
-                -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                pose[0] * t2_leg1,
-                -(t3_leg2 * t4_leg2),
-                -(t4_leg3 * t5_leg3),
-            ],
-            [
-                acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
-                g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
-                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                d_x_leg1 * t2_leg1, -(t2_leg3 * t4_leg2), -(t2_leg3 * t5_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let half_x = 0.5 * pose[0];
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = half_x - t1_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let t2_leg3 = y_plus_half_radius * INV_L_1;
+            let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let t3_leg2 = t1_leg2 * INV_L_1;
+            let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+                + minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            // --- leg3
+            let t3_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t4_leg3 = t3_leg3 * INV_L_1;
+            let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            // --- leg1
+            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t2_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            ::core::result::Result::Ok([
+                [
+                    acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
+                    -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
+                    -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
+                    g1_vx_leg3 * rate_1_leg3,
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
+                    g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
+                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                    minus_g2_vx_leg3 * a_on_f1_leg3
+                        + g1_vx_leg3 * minus_a_on_f2_leg3,
+                    pose[0] * t2_leg1,
+                    -(t3_leg2 * t4_leg2),
+                    -(t4_leg3 * t5_leg3),
+                ],
+                [
+                    acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
+                    minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
+                    g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
+                    -(minus_g1_vy_leg3 * rate_1_leg3),
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
+                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
+                    -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                    minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                    minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                    -(minus_g2_vy_leg2 * a_on_f1_leg2
+                        + minus_g1_vy_leg2 * a_on_f2_leg2),
+                    minus_g2_vy_leg3 * a_on_f1_leg3
+                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                    d_x_leg1 * t2_leg1,
+                    -(t2_leg3 * t4_leg2),
+                    -(t2_leg3 * t5_leg3),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2923,136 +3159,141 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        // --- sines and cosines
-        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg1
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
-        // --- leg2
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = L_1 * c2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        // --- leg3
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
-        let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-        ::core::result::Result::Ok([
-            [
-                acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
-                -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, -(g2_vx_leg1 * minus_rate_dot_2_leg1),
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
-                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
-                ::overact::math::signed(gq2_vx_leg1, qd_2_leg1),
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
-            ],
-            [
-                acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
-                g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
-                g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
-                minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
-                -::overact::math::signed(minus_gq2_vy_leg1, qd_2_leg1),
-                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            // --- sines and cosines
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg1
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = L_1 * c2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
+            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
+            ::core::result::Result::Ok([
+                [
+                    acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
+                    -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
+                    -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
+                    g1_vx_leg3 * rate_1_leg3,
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
+                    g1_vx_leg2, g1_vx_leg3, -(g2_vx_leg1 * minus_rate_dot_2_leg1),
+                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
+                    g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
+                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                    minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
+                    ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1),
+                    -::overact::math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                    -::overact::math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                ],
+                [
+                    acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
+                    minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
+                    g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
+                    -(minus_g1_vy_leg3 * rate_1_leg3),
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
+                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
+                    -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                    -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
+                    g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
+                    g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
+                    minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
+                    -::overact::math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1),
+                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2),
+                    ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -3083,224 +3324,244 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let half_x = 0.5 * pose[0];
-        let t1_leg3 = pose[1] * 0.8660254037844386;
-        let d_y_leg2 = half_x - t1_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t2_leg3 = y_plus_half_radius * INV_L_1;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        // --- leg3
-        let t3_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
-        let d_y_leg3 = half_x + t1_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let vy = (g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        let t3_leg2 = t1_leg2 * INV_L_1;
-        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
-        // --- leg2
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let t4_leg3 = t3_leg3 * INV_L_1;
-        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
-            / pivot_2;
-        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
-        let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
-        let rate_dot_1_leg2 = k_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-            + minus_bias_a_on_f2_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        // --- leg1
-        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let t3_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let t4_leg2 = ::overact::math::signed(k_leg2, qd_2_leg2);
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
-        ::core::result::Result::Ok([
-            [
-                dvx, minus_g1_vx_leg1 * minus_rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
-                g1_vx_leg3 * rate_dot_1_leg3, -(minus_g1_vx_leg1 * rate_1_leg1),
-                g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                pose[0] * t3_leg1,
-                -(t3_leg2 * t4_leg2),
-                -(t4_leg3 * t5_leg3),
-            ],
-            [
-                dvy, -(g1_vy_leg1 * minus_rate_dot_1_leg1), g1_vy_leg2 * rate_dot_1_leg2,
-                -(minus_g1_vy_leg3 * rate_dot_1_leg3), g1_vy_leg1 * rate_1_leg1,
-                g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1, g1_vy_leg2,
-                -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
-                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                d_x_leg1 * t3_leg1, -(t2_leg3 * t4_leg2), -(t2_leg3 * t5_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg2
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let half_x = 0.5 * pose[0];
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            let d_y_leg2 = half_x - t1_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let t2_leg3 = y_plus_half_radius * INV_L_1;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            // --- leg3
+            let t3_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
+                + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let vy = (g1_vy_leg1 * actuator_velocities[0]
+                + g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
+                / pivot_2;
+            let t3_leg2 = t1_leg2 * INV_L_1;
+            let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+            // --- leg2
+            let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t4_leg3 = t3_leg3 * INV_L_1;
+            let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                + minus_l_2_1 * t2) / pivot_2;
+            let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+            let rate_dot_1_leg2 = k_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            // --- leg1
+            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t3_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            ::core::result::Result::Ok([
+                [
+                    dvx, minus_g1_vx_leg1 * minus_rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
+                    g1_vx_leg3 * rate_dot_1_leg3, -(minus_g1_vx_leg1 * rate_1_leg1),
+                    g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
+                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
+                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
+                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
+                    g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
+                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                    g1_vx_leg2 * a_on_f2_leg2
+                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                    minus_g2_vx_leg3 * a_on_f1_leg3
+                        + g1_vx_leg3 * minus_a_on_f2_leg3,
+                    pose[0] * t3_leg1,
+                    -(t3_leg2 * t4_leg2),
+                    -(t4_leg3 * t5_leg3),
+                ],
+                [
+                    dvy, -(g1_vy_leg1 * minus_rate_dot_1_leg1), g1_vy_leg2 * rate_dot_1_leg2,
+                    -(minus_g1_vy_leg3 * rate_dot_1_leg3), g1_vy_leg1 * rate_1_leg1,
+                    g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
+                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
+                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
+                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
+                    g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                    -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                    g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
+                    minus_g2_vy_leg3 * a_on_f1_leg3
+                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                    d_x_leg1 * t3_leg1,
+                    -(t2_leg3 * t4_leg2),
+                    -(t2_leg3 * t5_leg3),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3324,187 +3585,230 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        // --- leg2
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-            + minus_g2_vy_leg1 * minus_vy_by_a1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let g2_a2_leg1 = k_leg1 * inv_det_ja;
-        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -(minus_vx_by_a1 * acceleration[0] + minus_vy_by_a1 * acceleration[1]),
-                -minus_rate_dot_1_leg1, 0.0, g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0,
-                g1_a1_leg3 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
-                -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
-                g2_a1_leg3 * rate_dot_2_leg3, INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1),
-                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2),
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-            ],
-            [
-                -(minus_vx_by_a2 * acceleration[0] + minus_vy_by_a2 * acceleration[1]), 0.0,
-                -minus_rate_dot_1_leg2, g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2,
-                g1_a2_leg3 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
-                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg3
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -(minus_vx_by_a1 * acceleration[0]
+                        + minus_vy_by_a1 * acceleration[1]),
+                    -minus_rate_dot_1_leg1,
+                    0.0,
+                    g1_a1_leg3 * rate_dot_1_leg3,
+                    rate_1_leg1,
+                    0.0,
+                    g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::sign(rate_1_leg1),
+                    0.0,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
+                    1.0,
+                    0.0,
+                    g1_a1_leg3,
+                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
+                    minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
+                    g2_a1_leg3 * rate_dot_2_leg3,
+                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    -::overact::math::wide::signed(
+                        g2_a1_leg1 - 1.0,
+                        minus_qd_2_leg1,
+                    ),
+                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                ],
+                [
+                    -(minus_vx_by_a2 * acceleration[0]
+                        + minus_vy_by_a2 * acceleration[1]),
+                    0.0,
+                    -minus_rate_dot_1_leg2,
+                    g1_a2_leg3 * rate_dot_1_leg3,
+                    0.0,
+                    rate_1_leg2,
+                    g1_a2_leg3 * rate_1_leg3,
+                    0.0,
+                    ::overact::math::wide::sign(rate_1_leg2),
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
+                    0.0,
+                    1.0,
+                    g1_a2_leg3,
+                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
+                    -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                    g2_a2_leg3 * rate_dot_2_leg3,
+                    g2_a2_leg1 * minus_a2_x_leg1,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3533,141 +3837,178 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        // --- sines and cosines
-        let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
-        (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg2
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        // --- leg1
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.095780524666612,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let v2_by_1_y_leg1 = L_1 * c2_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-        // --- leg2
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = L_1 * c2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        // --- leg3
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = L_1 * c2_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - g2_vx_leg1 * minus_vx_by_a1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - g2_vx_leg1 * minus_vx_by_a2;
-        let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -(minus_vx_by_a1 * acceleration[0] + minus_vy_by_a1 * acceleration[1]),
-                -minus_rate_dot_1_leg1, 0.0, g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0,
-                g1_a1_leg3 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
-                -(g2_a1_leg1 * minus_rate_dot_2_leg1), -(g2_a1_leg2 * minus_rate_dot_2_leg2),
-                g2_a1_leg3 * rate_dot_2_leg3, a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
-                g2_a1_leg2 * a_on_f1_leg2, -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                ::overact::math::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
-                ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-            ],
-            [
-                -(minus_vx_by_a2 * acceleration[0] + minus_vy_by_a2 * acceleration[1]), 0.0,
-                -minus_rate_dot_1_leg2, g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2,
-                g1_a2_leg3 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
-                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * a_on_f1_leg1,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                ::overact::math::signed(g2_a2_leg1, qd_2_leg1),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            // --- sines and cosines
+            let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
+            (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg1
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.095780524666612,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let v2_by_1_y_leg1 = L_1 * c2_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = L_1 * c2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = L_1 * c2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - g2_vx_leg1 * minus_vx_by_a2;
+            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
+                - g2_vy_leg2 * minus_vy_by_a1;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -(minus_vx_by_a1 * acceleration[0]
+                        + minus_vy_by_a1 * acceleration[1]),
+                    -minus_rate_dot_1_leg1,
+                    0.0,
+                    g1_a1_leg3 * rate_dot_1_leg3,
+                    rate_1_leg1,
+                    0.0,
+                    g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::sign(rate_1_leg1),
+                    0.0,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
+                    1.0,
+                    0.0,
+                    g1_a1_leg3,
+                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
+                    -(g2_a1_leg2 * minus_rate_dot_2_leg2),
+                    g2_a1_leg3 * rate_dot_2_leg3,
+                    a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
+                    g2_a1_leg2 * a_on_f1_leg2,
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    ::overact::math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
+                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                ],
+                [
+                    -(minus_vx_by_a2 * acceleration[0]
+                        + minus_vy_by_a2 * acceleration[1]),
+                    0.0,
+                    -minus_rate_dot_1_leg2,
+                    g1_a2_leg3 * rate_dot_1_leg3,
+                    0.0,
+                    rate_1_leg2,
+                    g1_a2_leg3 * rate_1_leg3,
+                    0.0,
+                    ::overact::math::wide::sign(rate_1_leg2),
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
+                    0.0,
+                    1.0,
+                    g1_a2_leg3,
+                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
+                    -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                    g2_a2_leg3 * rate_dot_2_leg3,
+                    g2_a2_leg1 * a_on_f1_leg1,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                ],
+            ])
+        })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3698,237 +4039,262 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let inv_det_ja = 1.0 / det_ja;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let vy = inv_pivot_2
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-        // --- leg2
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = inv_pivot_2
-            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
-        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-            + minus_g2_vy_leg1 * minus_vy_by_a1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let g2_a2_leg1 = k_leg1 * inv_det_ja;
-        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
-        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
-            - minus_bias_a_on_f2_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        ::core::result::Result::Ok([
-            [
-                -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy), -minus_rate_dot_1_leg1, 0.0,
-                g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0, g1_a1_leg3 * rate_1_leg3,
-                ::overact::math::sign(rate_1_leg1), 0.0,
-                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
-                -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
-                g2_a1_leg3 * rate_dot_2_leg3, INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1),
-                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2),
-                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-            ],
-            [
-                -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy), 0.0, -minus_rate_dot_1_leg2,
-                g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2, g1_a2_leg3 * rate_1_leg3, 0.0,
-                ::overact::math::sign(rate_1_leg2),
-                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
-                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
-                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-            ],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg3
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let vy = inv_pivot_2
+                * (g1_vy_leg1 * actuator_velocities[0]
+                    - minus_g1_vy_leg2 * actuator_velocities[1]
+                    - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+            // --- leg2
+            let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = inv_pivot_2
+                * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                    - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                    - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                    + minus_l_2_1 * t2);
+            let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
+                - g2_vy_leg3 * minus_vy_by_a1;
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+                - minus_bias_a_on_f2_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - g2_vy_leg3 * minus_vy_by_a2;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            ::core::result::Result::Ok([
+                [
+                    -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy), -minus_rate_dot_1_leg1, 0.0,
+                    g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0, g1_a1_leg3 * rate_1_leg3,
+                    ::overact::math::wide::sign(rate_1_leg1), 0.0,
+                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
+                    -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
+                    g2_a1_leg3 * rate_dot_2_leg3,
+                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                    -::overact::math::wide::signed(
+                        g2_a1_leg1 - 1.0,
+                        minus_qd_2_leg1,
+                    ),
+                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                ],
+                [
+                    -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy), 0.0, -minus_rate_dot_1_leg2,
+                    g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2, g1_a2_leg3 * rate_1_leg3, 0.0,
+                    ::overact::math::wide::sign(rate_1_leg2),
+                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
+                    -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                    g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
+                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
+                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                ],
+            ])
+        })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -3949,6 +4315,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -3970,7 +4338,7 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
@@ -3998,18 +4366,16 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         ::core::result::Result::Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
@@ -4037,6 +4403,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -4056,8 +4424,7 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
@@ -4069,7 +4436,7 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
@@ -4091,8 +4458,7 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
@@ -4104,7 +4470,7 @@ impl ThreeLegPoint {
         )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
@@ -4141,206 +4507,234 @@ impl ThreeLegPoint {
                 ("parameters", parameters),
             ],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let half_x = 0.5 * pose[0];
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
-        let t2_leg1 = parameters[4] + ::overact::math::signed(parameters[3], rate_1_leg1)
-            + a_on_f2_leg1 * my_2_leg1_inv_l_1 + parameters[2] * rate_1_leg1
-            - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
-                    + parameters[1]);
-        let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg2
-        let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let t1_leg3 = y_plus_half_radius * INV_L_1;
-        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
-            + minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
-            + L_1 * rate_1_squared_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-        let t3_leg2 = parameters[14]
-            + ::overact::math::signed(parameters[13], rate_1_leg2)
-            + parameters[17] * a_on_f2_leg2 + parameters[12] * rate_1_leg2
-            - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
-                    + parameters[11]);
-        let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
-        // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
-        let d_y_leg3 = pose[0] - d_y_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
-            * (parameters[25] - L_1 * parameters[26]) + parameters[27] * a_on_f1_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
-        let t3_leg3 = parameters[24]
-            + ::overact::math::signed(parameters[23], rate_1_leg3)
-            + minus_a_on_f2_leg3 * parameters[27] + parameters[22] * rate_1_leg3
-            + rate_dot_1_leg3
-                * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
-                    + parameters[21]);
-        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
-            + inv_l_1_mx_2_leg2;
-        let force_y_platform = acceleration[1] * t1_platform;
-        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * t1_platform;
-        let t2_platform = t5_leg3 + force_x_platform;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t1 = (t4_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
-        let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
-            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                parameters[9],
+                minus_qd_2_leg1,
+            );
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
+            let t2_leg1 = parameters[4]
+                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                + a_on_f2_leg1 * my_2_leg1_inv_l_1 + parameters[2] * rate_1_leg1
+                - minus_rate_dot_1_leg1
+                    * (parameters[0]
+                        + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
+                        + parameters[1]);
+            let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            // --- leg2
+            let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let t1_leg3 = y_plus_half_radius * INV_L_1;
+            let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+                + minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                parameters[19],
+                -minus_qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
+            let t3_leg2 = parameters[14]
+                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+                + parameters[17] * a_on_f2_leg2 + parameters[12] * rate_1_leg2
+                - minus_rate_dot_1_leg2
+                    * (parameters[10]
+                        + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
+                        + parameters[11]);
+            let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let d_y_leg3 = pose[0] - d_y_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
+                * (parameters[25] - L_1 * parameters[26])
+                + parameters[27] * a_on_f1_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                parameters[29],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
+            let t3_leg3 = parameters[24]
+                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
+                + minus_a_on_f2_leg3 * parameters[27] + parameters[22] * rate_1_leg3
+                + rate_dot_1_leg3
+                    * (parameters[20]
+                        + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
+                        + parameters[21]);
+            let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
+            let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1
+                - (minus_g2_vy_leg2 * force_on_u2_leg2
+                    + minus_g1_vy_leg2 * force_on_u1_leg2)
+                - (minus_g2_vy_leg3 * force_on_u2_leg3
+                    + minus_g1_vy_leg3 * force_on_u1_leg3);
+            let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+                + inv_l_1_mx_2_leg2;
+            let force_y_platform = acceleration[1] * t1_platform;
+            let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2
+                - (minus_g1_vx_leg1 * force_on_u1_leg1
+                    + minus_g2_vx_leg1 * force_on_u2_leg1)
+                + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = acceleration[0] * t1_platform;
+            let t2_platform = t5_leg3 + force_x_platform;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t1 = (t4_leg3 + force_y_platform + t2_platform * minus_l_2_1)
+                / pivot_2;
+            let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+                g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -4370,168 +4764,182 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration), ("parameters", parameters),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        // --- sines and cosines
-        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg1
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - l_1_rate_1_squared_leg1 * c2_leg1);
-        let l_1_mx_2_leg1 = L_1 * parameters[6];
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
-        let t1_leg1 = parameters[7] * a_on_f2_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
-                    + parameters[1]);
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        let tau_2_leg1 = ::overact::math::signed(parameters[9], qd_2_leg1);
-        let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + c2_leg1 * l_1_rate_2_squared_leg1);
-        let moment2_z_leg1 = parameters[7] * a_on_f1_leg1
-            - minus_rate_dot_2_leg1 * (parameters[5] - l_1_mx_2_leg1);
-        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
-        // --- leg2
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
-        let l_1_mx_2_leg2 = L_1 * parameters[16];
-        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-            - minus_rate_dot_2_leg2 * (parameters[15] - l_1_mx_2_leg2);
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
-        let t1_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2)
-            - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
-                    + parameters[11]);
-        let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
-        // --- leg3
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
-        let l_1_mx_2_leg3 = L_1 * parameters[26];
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-        let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - l_1_mx_2_leg3)
-            - parameters[27] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
-        let t1_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
-                + parameters[21]) + ::overact::math::signed(parameters[23], rate_1_leg3)
-            + parameters[22] * rate_1_leg3 - a_on_f2_leg3 * parameters[27]
-            + parameters[24];
-        let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
-        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t1_platform = parameters[30]
-            + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
-        let force_y_platform = acceleration[1] * t1_platform;
-        let t3_leg3 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
-            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * t1_platform;
-        let t2_platform = t3_leg3 + force_x_platform;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848631333,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848631322,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t1 = (t2_leg3 + force_y_platform + t2_platform * minus_l_2_1) / pivot_2;
-        let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
-            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            // --- sines and cosines
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg1
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - l_1_rate_1_squared_leg1 * c2_leg1);
+            let l_1_mx_2_leg1 = L_1 * parameters[6];
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            let t1_leg1 = parameters[7] * a_on_f2_leg1 + parameters[2] * rate_1_leg1
+                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                + parameters[4]
+                - minus_rate_dot_1_leg1
+                    * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
+                        + parameters[1]);
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            let tau_2_leg1 = ::overact::math::wide::signed(parameters[9], qd_2_leg1);
+            let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + c2_leg1 * l_1_rate_2_squared_leg1);
+            let moment2_z_leg1 = parameters[7] * a_on_f1_leg1
+                - minus_rate_dot_2_leg1 * (parameters[5] - l_1_mx_2_leg1);
+            let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
+            // --- leg2
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
+            let l_1_mx_2_leg2 = L_1 * parameters[16];
+            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (parameters[15] - l_1_mx_2_leg2);
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                parameters[19],
+                qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
+            let t1_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
+                + parameters[12] * rate_1_leg2
+                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+                - minus_rate_dot_1_leg2
+                    * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
+                        + parameters[11]);
+            let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
+            // --- leg3
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
+            let l_1_mx_2_leg3 = L_1 * parameters[26];
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - l_1_mx_2_leg3)
+                - parameters[27] * a_on_f1_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                parameters[29],
+                qd_2_leg3,
+            );
+            let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
+            let t1_leg3 = rate_dot_1_leg3
+                * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
+                    + parameters[21])
+                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
+                + parameters[22] * rate_1_leg3 - a_on_f2_leg3 * parameters[27]
+                + parameters[24];
+            let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
+            let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+                - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+                - minus_g1_vy_leg3 * force_on_u1_leg3;
+            let t1_platform = parameters[30]
+                + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+            let force_y_platform = acceleration[1] * t1_platform;
+            let t3_leg3 = g2_vx_leg1 * force_on_u2_leg1
+                - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = acceleration[0] * t1_platform;
+            let t2_platform = t3_leg3 + force_x_platform;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848631333,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848631322,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t1 = (t2_leg3 + force_y_platform + t2_platform * minus_l_2_1)
+                / pivot_2;
+            let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+                g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -4564,237 +4972,270 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let g1_vy_leg1 = l2_x_leg1 / det_leg1;
-        let half_x = 0.5 * pose[0];
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 / det_leg1;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let vy = (g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
-        // --- leg1
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 / det_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 / det_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let t2_leg3 = y_plus_half_radius * INV_L_1;
-        // --- leg2
-        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = (minus_bias_a_on_f1_leg1 + t2_leg1) / det_leg1;
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
-            / pivot_2;
-        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-        // --- leg1
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = (a_on_f1_leg1 - t2_leg1) / det_leg1;
-        let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
-        let t3_leg1 = parameters[4] + a_on_f2_leg1 * my_2_leg1_inv_l_1
-            + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1)
-            - minus_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
-                    + parameters[1]);
-        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
-        let minus_rate_dot_2_leg1 = (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1)
-            / det_leg1;
-        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg2
-        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-        let t3_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
-            + rate_1_leg2 * parameters[12]
-            + ::overact::math::signed(parameters[13], rate_1_leg2)
-            - minus_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
-                    + parameters[11]);
-        let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
-        // --- leg3
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-            + minus_bias_a_on_f2_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
-            * (parameters[25] - L_1 * parameters[26]) + parameters[27] * a_on_f1_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
-        let t3_leg3 = rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
-                + parameters[21]) + parameters[24] + minus_a_on_f2_leg3 * parameters[27]
-            + rate_1_leg3 * parameters[22]
-            + ::overact::math::signed(parameters[23], rate_1_leg3);
-        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
-            + inv_l_1_mx_2_leg2;
-        let force_y_platform = dvy * t1_platform;
-        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = dvx * t1_platform;
-        let t2_platform = t5_leg3 + force_x_platform;
-        let t3 = (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform) / pivot_2;
-        let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
-            g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let g1_vy_leg1 = l2_x_leg1 / det_leg1;
+            let half_x = 0.5 * pose[0];
+            let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg3
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 / det_leg1;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let vy = (g1_vy_leg1 * actuator_velocities[0]
+                - minus_g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
+                / pivot_2;
+            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+            // --- leg1
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 / det_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 / det_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                parameters[9],
+                minus_qd_2_leg1,
+            );
+            let t2_leg3 = y_plus_half_radius * INV_L_1;
+            // --- leg2
+            let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = (minus_bias_a_on_f1_leg1 + t2_leg1)
+                / det_leg1;
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                + minus_l_2_1 * t2) / pivot_2;
+            let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+            // --- leg1
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = (a_on_f1_leg1 - t2_leg1) / det_leg1;
+            let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
+            let t3_leg1 = parameters[4] + a_on_f2_leg1 * my_2_leg1_inv_l_1
+                + rate_1_leg1 * parameters[2]
+                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                - minus_rate_dot_1_leg1
+                    * (parameters[0]
+                        + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
+                        + parameters[1]);
+            let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
+            let minus_rate_dot_2_leg1 = (a_on_f2_leg1
+                + rate_2_squared_leg1 * t1_leg1) / det_leg1;
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                parameters[19],
+                -minus_qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
+            let t3_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
+                + rate_1_leg2 * parameters[12]
+                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+                - minus_rate_dot_1_leg2
+                    * (parameters[10]
+                        + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
+                        + parameters[11]);
+            let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
+            // --- leg3
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
+                * (parameters[25] - L_1 * parameters[26])
+                + parameters[27] * a_on_f1_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                parameters[29],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
+            let t3_leg3 = rate_dot_1_leg3
+                * (parameters[20]
+                    + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
+                    + parameters[21]) + parameters[24]
+                + minus_a_on_f2_leg3 * parameters[27] + rate_1_leg3 * parameters[22]
+                + ::overact::math::wide::signed(parameters[23], rate_1_leg3);
+            let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
+            let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1
+                - (minus_g2_vy_leg2 * force_on_u2_leg2
+                    + minus_g1_vy_leg2 * force_on_u1_leg2)
+                - (minus_g2_vy_leg3 * force_on_u2_leg3
+                    + minus_g1_vy_leg3 * force_on_u1_leg3);
+            let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+                + inv_l_1_mx_2_leg2;
+            let force_y_platform = dvy * t1_platform;
+            let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2
+                - (minus_g1_vx_leg1 * force_on_u1_leg1
+                    + minus_g2_vx_leg1 * force_on_u2_leg1)
+                + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = dvx * t1_platform;
+            let t2_platform = t5_leg3 + force_x_platform;
+            let t3 = (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform)
+                / pivot_2;
+            let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
+                g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -4822,200 +5263,222 @@ impl ThreeLegPoint {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let half_x = 0.5 * pose[0];
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
-            - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-            - base_parameters[13] * minus_rate_dot_2_leg1;
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let t1_leg3 = y_plus_half_radius * INV_L_1;
-        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
-            + minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
-            + L_1 * rate_1_squared_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-            - base_parameters[14] * minus_rate_dot_2_leg2;
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], -minus_qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
-            - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
-        // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
-            + base_parameters[18] * a_on_f1_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
-            + base_parameters[12];
-        let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
-            + minus_a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let force_y_platform = acceleration[1] * base_parameters[0];
-        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * base_parameters[0];
-        let t1_platform = t4_leg3 + force_x_platform;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t1 = (t3_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
-        let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
-            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                base_parameters[19],
+                minus_qd_2_leg1,
+            );
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
+                + base_parameters[10];
+            let force_on_u1_leg1 = minus_tau_2_leg1
+                + a_on_f2_leg1 * my_2_leg1_inv_l_1
+                - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
+                - base_parameters[13] * minus_rate_dot_2_leg1;
+            let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let t1_leg3 = y_plus_half_radius * INV_L_1;
+            let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+                + minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                base_parameters[20],
+                -minus_qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
+                + base_parameters[11];
+            let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
+                - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2
+                - tau_2_leg2;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
+                + base_parameters[18] * a_on_f1_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                base_parameters[21],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
+                + base_parameters[12];
+            let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
+                + minus_a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
+            let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1
+                - (minus_g2_vy_leg2 * force_on_u2_leg2
+                    + minus_g1_vy_leg2 * force_on_u1_leg2)
+                - (minus_g2_vy_leg3 * force_on_u2_leg3
+                    + minus_g1_vy_leg3 * force_on_u1_leg3);
+            let force_y_platform = acceleration[1] * base_parameters[0];
+            let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2
+                - (minus_g1_vx_leg1 * force_on_u1_leg1
+                    + minus_g2_vx_leg1 * force_on_u2_leg1)
+                + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = acceleration[0] * base_parameters[0];
+            let t1_platform = t4_leg3 + force_x_platform;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t1 = (t3_leg3 + force_y_platform + t1_platform * minus_l_2_1)
+                / pivot_2;
+            let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+                g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -5045,160 +5508,174 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration), ("base_parameters", base_parameters),
             ],
         )?;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        // --- sines and cosines
-        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        // --- leg1
-        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let k_leg1 = INV_L_1 / s2_leg1;
-        let g1_vy_leg1 = c12_leg1 * k_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
-        let g2_vx_leg1 = s1_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
-        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
-        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-        let tau_2_leg1 = ::overact::math::signed(base_parameters[19], qd_2_leg1);
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + base_parameters[16] * a_on_f2_leg1 - tau_2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-        let moment2_z_leg1 = base_parameters[16] * a_on_f1_leg1
-            - base_parameters[13] * minus_rate_dot_2_leg1;
-        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
-        // --- leg2
-        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let k_leg2 = INV_L_1 / s2_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
-        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-            - base_parameters[14] * minus_rate_dot_2_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
-        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
-        // --- leg3
-        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let k_leg3 = INV_L_1 / s2_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
-            - base_parameters[18] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
-        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
-        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
-            + base_parameters[12];
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
-        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * base_parameters[0];
-        let t2 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
-            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = acceleration[0] * base_parameters[0];
-        let t3 = t2 + force_x_platform;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848631333,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let minus_l_2_1 = minus_s_1_2 / s_1_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848631322,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
-        let t5 = t3 / s_1_1 + minus_l_2_1 * t4;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
-            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            // --- sines and cosines
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            ]);
+            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg1
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let k_leg1 = INV_L_1 / s2_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
+                + base_parameters[10];
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+            let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            let tau_2_leg1 = ::overact::math::wide::signed(
+                base_parameters[19],
+                qd_2_leg1,
+            );
+            let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+                + base_parameters[16] * a_on_f2_leg1 - tau_2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+            let moment2_z_leg1 = base_parameters[16] * a_on_f1_leg1
+                - base_parameters[13] * minus_rate_dot_2_leg1;
+            let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
+            // --- leg2
+            let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
+            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                base_parameters[20],
+                qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
+                + base_parameters[11];
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
+            let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+            let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+                + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+            // --- leg3
+            let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+            let k_leg3 = INV_L_1 / s2_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
+                - base_parameters[18] * a_on_f1_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                base_parameters[21],
+                qd_2_leg3,
+            );
+            let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
+            let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
+            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
+                + base_parameters[12];
+            let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+                - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+            let t1 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+                - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+                - minus_g1_vy_leg3 * force_on_u1_leg3;
+            let force_y_platform = acceleration[1] * base_parameters[0];
+            let t2 = g2_vx_leg1 * force_on_u2_leg1
+                - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = acceleration[0] * base_parameters[0];
+            let t3 = t2 + force_x_platform;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848631333,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_l_2_1 = minus_s_1_2 / s_1_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848631322,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
+            let t5 = t3 / s_1_1 + minus_l_2_1 * t4;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
+                g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+            ])
+        })
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -5231,234 +5708,258 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let half_x = 0.5 * pose[0];
-        let t1_leg3 = pose[1] * 0.8660254037844386;
-        // --- leg2
-        let d_y_leg2 = half_x - t1_leg3;
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
-        let d_y_leg3 = half_x + t1_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let vy = (g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let t3_leg3 = y_plus_half_radius * INV_L_1;
-        // --- leg2
-        let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
-        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
-            - bias_rate_dot_1_leg2;
-        // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
-        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
-            - bias_rate_dot_1_leg1;
-        // --- leg3
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
-            - bias_rate_dot_1_leg3;
-        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
-            / pivot_2;
-        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
-        let inv_l_1_my_2_leg1 = INV_L_1 * base_parameters[16];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + a_on_f2_leg1 * inv_l_1_my_2_leg1 + minus_tau_2_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let moment2_z_leg1 = a_on_f1_leg1 * inv_l_1_my_2_leg1
-            - base_parameters[13] * minus_rate_dot_2_leg1;
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg2
-        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-            - base_parameters[14] * minus_rate_dot_2_leg2;
-        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], -minus_qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
-        // --- leg3
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-            + minus_bias_a_on_f2_leg3;
-        let minus_rate_dot_2_leg3 = k_leg3
-            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-        let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
-            + base_parameters[18] * a_on_f1_leg3;
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
-        let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
-            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
-            + base_parameters[12];
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + minus_a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        let force_y_platform = dvy * base_parameters[0];
-        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let force_x_platform = dvx * base_parameters[0];
-        let t5 = t4 + force_x_platform;
-        let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
-        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
-        ::core::result::Result::Ok([
-            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
-            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let half_x = 0.5 * pose[0];
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = half_x - t1_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
+                + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let vy = (g1_vy_leg1 * actuator_velocities[0]
+                - minus_g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
+                / pivot_2;
+            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
+                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
+                + base_parameters[10];
+            let t3_leg3 = y_plus_half_radius * INV_L_1;
+            // --- leg2
+            let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
+            let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+                - bias_rate_dot_1_leg2;
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+                - bias_rate_dot_1_leg1;
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+                - bias_rate_dot_1_leg3;
+            let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+            let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+                + minus_l_2_1 * t2) / pivot_2;
+            let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let inv_l_1_my_2_leg1 = INV_L_1 * base_parameters[16];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                base_parameters[19],
+                minus_qd_2_leg1,
+            );
+            let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+                + a_on_f2_leg1 * inv_l_1_my_2_leg1 + minus_tau_2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let moment2_z_leg1 = a_on_f1_leg1 * inv_l_1_my_2_leg1
+                - base_parameters[13] * minus_rate_dot_2_leg1;
+            let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                base_parameters[20],
+                -minus_qd_2_leg2,
+            );
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
+                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
+                + base_parameters[11];
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+            let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+                + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+            // --- leg3
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
+                + base_parameters[18] * a_on_f1_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                base_parameters[21],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
+            let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
+                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
+                + base_parameters[12];
+            let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+                + minus_a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+            let t3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1
+                - (minus_g2_vy_leg2 * force_on_u2_leg2
+                    + minus_g1_vy_leg2 * force_on_u1_leg2)
+                - (minus_g2_vy_leg3 * force_on_u2_leg3
+                    + minus_g1_vy_leg3 * force_on_u1_leg3);
+            let force_y_platform = dvy * base_parameters[0];
+            let t4 = g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2
+                - (minus_g1_vx_leg1 * force_on_u1_leg1
+                    + minus_g2_vx_leg1 * force_on_u2_leg1)
+                + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let force_x_platform = dvx * base_parameters[0];
+            let t5 = t4 + force_x_platform;
+            let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
+            let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
+            ::core::result::Result::Ok([
+                g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
+                g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
+            ])
+        })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -5477,140 +5978,163 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
-            + parameters[1];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let c2_leg1 = 8.680555555555555 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-        let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
-        let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
-            + parameters[11];
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let force1_y_by_2_leg2 = c2_leg2 * parameters[16] - s2_leg2 * parameters[17];
-        let masses_leg2_1_2 = L_1 * force1_y_by_2_leg2;
-        let t2_leg2 = minus_g1_vx_leg1
-            * (minus_g1_vx_leg1 * masses_leg1_1_1 + minus_g2_vx_leg1 * masses_leg1_1_2)
-            + minus_g2_vx_leg1
-                * (minus_g1_vx_leg1 * masses_leg1_1_2 + minus_g2_vx_leg1 * parameters[5])
-            + g1_vx_leg2
-                * (g1_vx_leg2 * masses_leg2_1_1 - minus_g2_vx_leg2 * masses_leg2_1_2)
-            - minus_g2_vx_leg2
-                * (g1_vx_leg2 * masses_leg2_1_2 - minus_g2_vx_leg2 * parameters[15]);
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
-            + parameters[21];
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let force1_y_by_2_leg3 = c2_leg3 * parameters[26] - s2_leg3 * parameters[27];
-        let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
-        let t2_leg3 = t2_leg2
-            + g1_vx_leg3
-                * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
-            - minus_g2_vx_leg3
-                * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[25]);
-        // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
-        let t4_leg2 = g2_vy_leg2 * parameters[15] - minus_g1_vy_leg2 * masses_leg2_1_2;
-        // --- leg1
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1 - minus_g2_vy_leg1 * masses_leg1_1_2;
-        let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * parameters[5];
-        // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
-        let t4_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
-        let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
-            - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
-            + g1_vx_leg3 * t3_leg3 - minus_g2_vx_leg3 * t4_leg3;
-        let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t4_leg3
-            - minus_g1_vy_leg3 * t3_leg3;
-        ::core::result::Result::Ok([
-            [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
+                + parameters[1];
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let c2_leg1 = 8.680555555555555 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let s2_leg1 = INV_L_1_SQUARED * det_leg1;
+            let force1_y_by_2_leg1 = c2_leg1 * parameters[6]
+                - s2_leg1 * parameters[7];
+            let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
+                + parameters[11];
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+            let force1_y_by_2_leg2 = c2_leg2 * parameters[16]
+                - s2_leg2 * parameters[17];
+            let masses_leg2_1_2 = L_1 * force1_y_by_2_leg2;
+            let t2_leg2 = minus_g1_vx_leg1
+                * (minus_g1_vx_leg1 * masses_leg1_1_1
+                    + minus_g2_vx_leg1 * masses_leg1_1_2)
+                + minus_g2_vx_leg1
+                    * (minus_g1_vx_leg1 * masses_leg1_1_2
+                        + minus_g2_vx_leg1 * parameters[5])
+                + g1_vx_leg2
+                    * (g1_vx_leg2 * masses_leg2_1_1
+                        - minus_g2_vx_leg2 * masses_leg2_1_2)
+                - minus_g2_vx_leg2
+                    * (g1_vx_leg2 * masses_leg2_1_2
+                        - minus_g2_vx_leg2 * parameters[15]);
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
+                + parameters[21];
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+            let force1_y_by_2_leg3 = c2_leg3 * parameters[26]
+                - s2_leg3 * parameters[27];
+            let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
+            let t2_leg3 = t2_leg2
+                + g1_vx_leg3
+                    * (g1_vx_leg3 * masses_leg3_1_1
+                        - minus_g2_vx_leg3 * masses_leg3_1_2)
+                - minus_g2_vx_leg3
+                    * (g1_vx_leg3 * masses_leg3_1_2
+                        - minus_g2_vx_leg3 * parameters[25]);
+            // --- leg2
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2
+                - minus_g1_vy_leg2 * masses_leg2_1_1;
+            let t4_leg2 = g2_vy_leg2 * parameters[15]
+                - minus_g1_vy_leg2 * masses_leg2_1_2;
+            // --- leg1
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1
+                - minus_g2_vy_leg1 * masses_leg1_1_2;
+            let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2
+                - minus_g2_vy_leg1 * parameters[5];
+            // --- leg3
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2
+                - minus_g1_vy_leg3 * masses_leg3_1_1;
+            let t4_leg3 = g2_vy_leg3 * parameters[25]
+                - minus_g1_vy_leg3 * masses_leg3_1_2;
+            let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
+                - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
+                + g1_vx_leg3 * t3_leg3 - minus_g2_vx_leg3 * t4_leg3;
+            let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
+                + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2
+                + g2_vy_leg3 * t4_leg3 - minus_g1_vy_leg3 * t3_leg3;
+            ::core::result::Result::Ok([
+                [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
+            ])
+        })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -5631,141 +6155,149 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("base_parameters", base_parameters)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-        let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
-        let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-        let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
-        let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
-        let t2_leg2 = minus_g2_vx_leg1
-            * (minus_g2_vx_leg1 * base_parameters[13]
-                - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
-            - minus_g1_vx_leg1
-                * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
-                    - minus_g1_vx_leg1 * base_parameters[1])
-            + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2]
-                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
-            + minus_g2_vx_leg2
-                * (g1_vx_leg2 * minus_masses_leg2_1_2
-                    + minus_g2_vx_leg2 * base_parameters[14]);
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
-        let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
-        let t2_leg3 = t2_leg2
-            + g1_vx_leg3
-                * (g1_vx_leg3 * base_parameters[3]
-                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
-            + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
-                    + minus_g2_vx_leg3 * base_parameters[15]);
-        // --- leg1
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let t1_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
-            + minus_g2_vy_leg1 * base_parameters[13];
-        let t2_leg1 = g1_vy_leg1 * base_parameters[1]
-            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        // --- leg2
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
-            + g2_vy_leg2 * minus_masses_leg2_1_2;
-        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
-            + g2_vy_leg2 * base_parameters[14];
-        // --- leg3
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
-            + g2_vy_leg3 * base_parameters[15];
-        let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
-            - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
-            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
-        let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
-            + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
-            + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
-        ::core::result::Result::Ok([
-            [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let s2_leg1 = INV_L_1_SQUARED * det_leg1;
+            let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
+            let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+            let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
+            let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
+            let t2_leg2 = minus_g2_vx_leg1
+                * (minus_g2_vx_leg1 * base_parameters[13]
+                    - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
+                - minus_g1_vx_leg1
+                    * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
+                        - minus_g1_vx_leg1 * base_parameters[1])
+                + g1_vx_leg2
+                    * (g1_vx_leg2 * base_parameters[2]
+                        + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+                + minus_g2_vx_leg2
+                    * (g1_vx_leg2 * minus_masses_leg2_1_2
+                        + minus_g2_vx_leg2 * base_parameters[14]);
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+            let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
+            let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
+            let t2_leg3 = t2_leg2
+                + g1_vx_leg3
+                    * (g1_vx_leg3 * base_parameters[3]
+                        + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+                + minus_g2_vx_leg3
+                    * (g1_vx_leg3 * minus_masses_leg3_1_2
+                        + minus_g2_vx_leg3 * base_parameters[15]);
+            // --- leg1
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let t1_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
+                + minus_g2_vy_leg1 * base_parameters[13];
+            let t2_leg1 = g1_vy_leg1 * base_parameters[1]
+                + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+            // --- leg2
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
+                + g2_vy_leg2 * minus_masses_leg2_1_2;
+            let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
+                + g2_vy_leg2 * base_parameters[14];
+            // --- leg3
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+                + g2_vy_leg3 * minus_masses_leg3_1_2;
+            let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+                + g2_vy_leg3 * base_parameters[15];
+            let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
+                - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
+                - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
+            let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
+                + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
+                + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
+            ::core::result::Result::Ok([
+                [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
+            ])
+        })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -5788,173 +6320,193 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("parameters", parameters)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let l_1_mx_2_leg1 = L_1 * parameters[6];
-        let l_1_my_2_leg1 = L_1 * parameters[7];
-        let minus_moment2_z_leg1 = minus_bias_rate_dot_2_leg1
-            * (parameters[5] - l_1_mx_2_leg1) + rate_2_squared_leg1 * l_1_my_2_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let t2_leg1 = parameters[4] + rate_1_squared_leg1 * l_1_my_2_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1)
-            + bias_rate_dot_1_leg1
-                * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
-                    + parameters[1]);
-        let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
-        // --- leg2
-        let t1_leg2 = pose[0] + 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t2_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let t3_leg2 = INV_L_1 * y_plus_half_radius;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let l_1_mx_2_leg2 = L_1 * parameters[16];
-        let t4_leg2 = parameters[14]
-            + ::overact::math::signed(parameters[13], rate_1_leg2)
-            + parameters[17] * bias_a_on_f2_leg2 + parameters[12] * rate_1_leg2
-            + bias_rate_dot_1_leg2
-                * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
-                    + parameters[11]);
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_moment2_z_leg2 = minus_bias_rate_dot_2_leg2
-            * (parameters[15] - l_1_mx_2_leg2)
-            + minus_bias_a_on_f1_leg2 * parameters[17];
-        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = INV_L_1 * t1_leg3 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let l_1_mx_2_leg3 = L_1 * parameters[26];
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let t2_leg3 = bias_rate_dot_1_leg3
-            * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
-                + parameters[21]) + parameters[27] * minus_bias_a_on_f2_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], -minus_qd_2_leg3);
-        let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
-        let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let minus_moment2_z_leg3 = minus_bias_rate_dot_2_leg3
-            * (parameters[25] - l_1_mx_2_leg3) + bias_a_on_f1_leg3 * parameters[27];
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
-            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
-            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
-            - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
-            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            + g1_vy_leg2 * force_on_u1_leg2
-            - (minus_g2_vy_leg3 * force_on_u2_leg3
-                + minus_g1_vy_leg3 * force_on_u1_leg3);
-        ::core::result::Result::Ok([t3_leg3, t4_leg3])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_bias_rate_dot_2_leg1 = k_leg1
+                * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let l_1_mx_2_leg1 = L_1 * parameters[6];
+            let l_1_my_2_leg1 = L_1 * parameters[7];
+            let minus_moment2_z_leg1 = minus_bias_rate_dot_2_leg1
+                * (parameters[5] - l_1_mx_2_leg1)
+                + rate_2_squared_leg1 * l_1_my_2_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                parameters[9],
+                minus_qd_2_leg1,
+            );
+            let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1
+                * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            let t2_leg1 = parameters[4] + rate_1_squared_leg1 * l_1_my_2_leg1
+                + parameters[2] * rate_1_leg1
+                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                + bias_rate_dot_1_leg1
+                    * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
+                        + parameters[1]);
+            let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
+            // --- leg2
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let t3_leg2 = INV_L_1 * y_plus_half_radius;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let l_1_mx_2_leg2 = L_1 * parameters[16];
+            let t4_leg2 = parameters[14]
+                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+                + parameters[17] * bias_a_on_f2_leg2 + parameters[12] * rate_1_leg2
+                + bias_rate_dot_1_leg2
+                    * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
+                        + parameters[11]);
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                parameters[19],
+                qd_2_leg2,
+            );
+            let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
+            let minus_bias_rate_dot_2_leg2 = k_leg2
+                * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_moment2_z_leg2 = minus_bias_rate_dot_2_leg2
+                * (parameters[15] - l_1_mx_2_leg2)
+                + minus_bias_a_on_f1_leg2 * parameters[17];
+            let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = INV_L_1 * t1_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let l_1_mx_2_leg3 = L_1 * parameters[26];
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let t2_leg3 = bias_rate_dot_1_leg3
+                * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
+                    + parameters[21]) + parameters[27] * minus_bias_a_on_f2_leg3
+                + parameters[22] * rate_1_leg3
+                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
+                + parameters[24];
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                parameters[29],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
+            let minus_bias_rate_dot_2_leg3 = k_leg3
+                * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let minus_moment2_z_leg3 = minus_bias_rate_dot_2_leg3
+                * (parameters[25] - l_1_mx_2_leg3)
+                + bias_a_on_f1_leg3 * parameters[27];
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+                - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                + minus_g2_vy_leg1 * minus_force_on_u2_leg1
+                + g2_vy_leg2 * force_on_u2_leg2 + g1_vy_leg2 * force_on_u1_leg2
+                - (minus_g2_vy_leg3 * force_on_u2_leg3
+                    + minus_g1_vy_leg3 * force_on_u1_leg3);
+            ::core::result::Result::Ok([t3_leg3, t4_leg3])
+        })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -5977,176 +6529,195 @@ impl ThreeLegPoint {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
-        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + L_1 * minus_force2_y_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
-            + minus_tau_2_leg1;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let moment1_z_leg2 = base_parameters[2] * bias_rate_dot_1_leg2;
-        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + base_parameters[17] * bias_a_on_f2_leg2 - tau_2_leg2;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
-            + minus_bias_a_on_f1_leg2 * base_parameters[17];
-        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = base_parameters[3] * bias_rate_dot_1_leg3;
-        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
-            + base_parameters[12];
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + base_parameters[18] * minus_bias_a_on_f2_leg3 - tau_2_leg3;
-        let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
-            + bias_a_on_f1_leg3 * base_parameters[18];
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let t1 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
-            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
-            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
-            - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t2 = g1_vy_leg1 * force_on_u1_leg1
-            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
-            - minus_g1_vy_leg3 * force_on_u1_leg3;
-        ::core::result::Result::Ok([t1, t2])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+            let t2_leg1 = 0.5 * t1_leg1;
+            let minus_bias_rate_dot_2_leg1 = k_leg1
+                * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
+            let minus_moment2_z_leg1 = base_parameters[13]
+                * minus_bias_rate_dot_2_leg1 + L_1 * minus_force2_y_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                base_parameters[19],
+                minus_qd_2_leg1,
+            );
+            let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1
+                * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+            let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
+            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
+                + base_parameters[10];
+            let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+            let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
+            let v2_by_1_y_leg1 = INV_TWICE_L_1 * t1_leg1;
+            let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+                + v2_by_1_x_leg1 * force2_x_leg1
+                - v2_by_1_y_leg1 * minus_force2_y_leg1 + minus_tau_2_leg1;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let moment1_z_leg2 = base_parameters[2] * bias_rate_dot_1_leg2;
+            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
+                + base_parameters[11];
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                base_parameters[20],
+                qd_2_leg2,
+            );
+            let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+                + base_parameters[17] * bias_a_on_f2_leg2 - tau_2_leg2;
+            let minus_bias_rate_dot_2_leg2 = k_leg2
+                * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_moment2_z_leg2 = base_parameters[14]
+                * minus_bias_rate_dot_2_leg2
+                + minus_bias_a_on_f1_leg2 * base_parameters[17];
+            let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let moment1_z_leg3 = base_parameters[3] * bias_rate_dot_1_leg3;
+            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
+                + base_parameters[12];
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                base_parameters[21],
+                qd_2_leg3,
+            );
+            let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+                + base_parameters[18] * minus_bias_a_on_f2_leg3 - tau_2_leg3;
+            let minus_bias_rate_dot_2_leg3 = k_leg3
+                * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let minus_moment2_z_leg3 = base_parameters[15]
+                * minus_bias_rate_dot_2_leg3
+                + bias_a_on_f1_leg3 * base_parameters[18];
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let t1 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+                - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let t2 = g1_vy_leg1 * force_on_u1_leg1
+                + minus_g2_vy_leg1 * minus_force_on_u2_leg1
+                + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+                + g2_vy_leg3 * force_on_u2_leg3
+                - minus_g1_vy_leg3 * force_on_u1_leg3;
+            ::core::result::Result::Ok([t1, t2])
+        })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -6159,7 +6730,7 @@ impl ThreeLegPoint {
     /// Output: 2.
     ///
     /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 360 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and builds for processors without vectors of 4 numbers. With these (`-C target-cpu=native`) the 3 legs run side by side, in the lanes of vectors: 12 operations once, and 127 of each leg.
+    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 3 legs run side by side, in the lanes of vectors: 12 operations once, and 127 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
@@ -6175,192 +6746,229 @@ impl ThreeLegPoint {
                 ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
             ],
         )?;
-        if ::overact::lanes::FOUR {
-            /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-            /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
-            /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
-            /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-            /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            // --- what the legs add: a row for each number, in it one for each leg
-            let mut added = [[0.0; 3]; 5];
-            /// Numbers in which the legs differ: a row for each, in it one for each leg.
-            /// 0: x of the base
-            /// 1: cos(turn of the base about z)
-            /// 2: y of the base
-            /// 3: sin(turn of the base about z)
-            static OF_LEG: [[::core::primitive::f64; 3]; 4] = [
-                [0.0, -0.3031088913245535, 0.30310889132455343],
-                [0.0, -0.8660254037844386, 0.8660254037844384], [0.35, -0.175, -0.175],
-                [1.0, -0.5, -0.5],
-            ];
-            /// Names of the legs, for errors.
-            static LEGS: [&::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
-            /// What must not vanish, at home.
-            static HOME_0: [::core::primitive::f64; 3] = [
-                0.12249999999999998, 0.12249999999999998, 0.1224999999999999,
-            ];
-            /// What must not vanish, at home.
-            static HOME_2: [::core::primitive::f64; 3] = [
-                0.057484236969798944, 0.057484236969798944, 0.057484236969798944,
-            ];
-            for at in ::overact::lanes::places_of_few::<3>() {
-                // --- the legs' own
-                let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
-                // --- numbers in which the legs differ, for the legs of this turn
-                let of_leg = [
-                    ::overact::lanes::row(&OF_LEG[0], at), ::overact::lanes::row(&OF_LEG[1], at),
-                    ::overact::lanes::row(&OF_LEG[2], at), ::overact::lanes::row(&OF_LEG[3], at),
+        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        #[derive(::core::clone::Clone, ::core::marker::Copy)]
+        struct Legs<'a> {
+            pose: &'a [::core::primitive::f64; 2],
+            twist: &'a [::core::primitive::f64; 2],
+            torques: &'a [::core::primitive::f64; 3],
+            parameters: &'a [::core::primitive::f64; 31],
+        }
+        impl ::overact::lanes::SideBySide for Legs<'_> {
+            type Output = ::core::result::Result<
+                [::core::primitive::f64; 2],
+                ::overact::Error,
+            >;
+            #[inline(always)]
+            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+                let Self { pose, twist, torques, parameters } = self;
+                /// 1 / l_1
+                const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+                /// 1 / l_1²
+                const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+                /// l_1 = l_2
+                const L_1: ::core::primitive::f64 = 0.24;
+                /// l_1²
+                const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+                /// 2 l_1²
+                const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+                // --- what the legs add: a row for each number, in it one for each leg
+                let mut added = [[0.0; 3]; 5];
+                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// 0: x of the base
+                /// 1: cos(turn of the base about z)
+                /// 2: y of the base
+                /// 3: sin(turn of the base about z)
+                static OF_LEG: [[::core::primitive::f64; 3]; 4] = [
+                    [0.0, -0.3031088913245535, 0.30310889132455343],
+                    [0.0, -0.8660254037844386, 0.8660254037844384], [0.35, -0.175, -0.175],
+                    [1.0, -0.5, -0.5],
                 ];
-                // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                let own_parameters = [
-                    ::overact::lanes::scattered(parameters, [8, 10], at),
-                    ::overact::lanes::scattered(parameters, [0, 10], at),
-                    ::overact::lanes::scattered(parameters, [1, 10], at),
-                    ::overact::lanes::scattered(parameters, [6, 10], at),
-                    ::overact::lanes::scattered(parameters, [7, 10], at),
-                    ::overact::lanes::scattered(parameters, [5, 10], at),
-                    ::overact::lanes::scattered(parameters, [9, 10], at),
-                    ::overact::lanes::scattered(parameters, [2, 10], at),
-                    ::overact::lanes::scattered(parameters, [3, 10], at),
-                    ::overact::lanes::scattered(parameters, [4, 10], at),
+                /// Names of the legs, for errors.
+                static LEGS: [&::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
+                /// What must not vanish, at home.
+                static HOME_0: [::core::primitive::f64; 3] = [
+                    0.12249999999999998, 0.12249999999999998, 0.1224999999999999,
                 ];
-                let mut failed = ::overact::lanes::Failed::none();
-                // --- leg
-                let t1_leg = pose[0] - of_leg[0];
-                let t2_leg = pose[1] - of_leg[2];
-                let d_x_leg = of_leg[1] * t1_leg + of_leg[3] * t2_leg;
-                let d_y_leg = of_leg[1] * t2_leg - of_leg[3] * t1_leg;
-                let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                ::overact::lanes::leg(&mut failed, rho_squared_leg, &HOME_0, &LEGS, at);
-                let h_squared_leg = L_1_SQUARED / rho_squared_leg - 0.25;
-                ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
-                let h_leg = ::overact::lanes::sqrt(h_squared_leg);
-                let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
-                let l2_x_leg = d_x_leg - l1_x_leg;
-                let c12_leg = INV_L_1 * l2_x_leg;
-                let l1_y_leg = 0.5 * d_y_leg - d_x_leg * h_leg;
-                let l2_y_leg = d_y_leg - l1_y_leg;
-                let s12_leg = INV_L_1 * l2_y_leg;
-                let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
-                let det_leg = rho_squared_leg * h_leg;
-                ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
-                let k_leg = L_1 / det_leg;
-                let g1_vx_leg = minus_fk1_x_leg * k_leg;
-                let masses_leg_1_1 = own_parameters[1] + L_1_SQUARED * own_parameters[0]
-                    + own_parameters[2];
-                let c1_leg = INV_L_1 * l1_x_leg;
-                let s1_leg = INV_L_1 * l1_y_leg;
-                let fk2_x_leg = of_leg[1] * c1_leg - of_leg[3] * s1_leg;
-                let minus_g2_vx_leg = fk2_x_leg * k_leg;
-                let c2_leg = 8.680555555555555 * (rho_squared_leg - TWICE_L_1_SQUARED);
-                let s2_leg = INV_L_1_SQUARED * det_leg;
-                let force1_y_by_2_leg = c2_leg * own_parameters[3]
-                    - s2_leg * own_parameters[4];
-                let masses_leg_1_2 = L_1 * force1_y_by_2_leg;
-                let minus_fk1_y_leg = of_leg[1] * s12_leg + of_leg[3] * c12_leg;
-                let g1_vy_leg = minus_fk1_y_leg * k_leg;
-                let fk2_y_leg = of_leg[1] * s1_leg + of_leg[3] * c1_leg;
-                let minus_g2_vy_leg = fk2_y_leg * k_leg;
-                let t3_leg = g1_vy_leg * masses_leg_1_1
-                    - minus_g2_vy_leg * masses_leg_1_2;
-                let t4_leg = g1_vy_leg * masses_leg_1_2
-                    - minus_g2_vy_leg * own_parameters[5];
-                let rate_1_leg = g1_vx_leg * twist[0] + g1_vy_leg * twist[1];
-                let rate_1_squared_leg = rate_1_leg * rate_1_leg;
-                let bias_a_on_f2_leg = L_1 * rate_1_squared_leg;
-                let minus_rate_2_leg = minus_g2_vx_leg * twist[0]
-                    + minus_g2_vy_leg * twist[1];
-                let rate_2_squared_leg = minus_rate_2_leg * minus_rate_2_leg;
-                let minus_bias_a_on_f1_leg = L_1 * rate_2_squared_leg;
-                let minus_bias_rate_dot_2_leg = k_leg
-                    * (bias_a_on_f2_leg + c2_leg * minus_bias_a_on_f1_leg);
-                let t5_leg = own_parameters[3] * minus_bias_rate_dot_2_leg;
-                let t6_leg = own_parameters[4] * rate_2_squared_leg;
-                let moment2_z_leg = L_1 * (t5_leg - t6_leg)
-                    - own_parameters[5] * minus_bias_rate_dot_2_leg;
-                let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                let minus_tau_2_leg = ::overact::lanes::signed(
-                    own_parameters[6],
-                    minus_qd_2_leg,
-                    at,
-                );
-                let force_on_u2_leg = moment2_z_leg - minus_tau_2_leg;
-                let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
-                    - own_parameters[3] * rate_2_squared_leg;
-                let minus_force2_y_leg = t5_leg + t6_leg;
-                let bias_rate_dot_1_leg = k_leg
-                    * (minus_bias_a_on_f1_leg + c2_leg * bias_a_on_f2_leg);
-                let t7_leg = own_parameters[9]
-                    + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
-                    + own_parameters[7] * rate_1_leg
-                    + ::overact::lanes::signed(own_parameters[8], rate_1_leg, at)
-                    + bias_rate_dot_1_leg * masses_leg_1_1;
-                let force_on_u1_leg = minus_tau_2_leg + t7_leg;
-                let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
-                failed.told()?;
-                ::overact::lanes::put(
-                    &mut added[0],
-                    [0, 1],
-                    at,
-                    g1_vx_leg
-                        * (g1_vx_leg * masses_leg_1_1 - minus_g2_vx_leg * masses_leg_1_2)
-                        - minus_g2_vx_leg
-                            * (g1_vx_leg * masses_leg_1_2
-                                - minus_g2_vx_leg * own_parameters[5]),
-                );
-                ::overact::lanes::put(
-                    &mut added[1],
-                    [0, 1],
-                    at,
-                    g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
-                );
-                ::overact::lanes::put(
-                    &mut added[2],
-                    [0, 1],
-                    at,
-                    g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
-                );
-                ::overact::lanes::put(
-                    &mut added[3],
-                    [0, 1],
-                    at,
-                    minus_g2_vx_leg * force_on_u2_leg
-                        + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
-                );
-                ::overact::lanes::put(
-                    &mut added[4],
-                    [0, 1],
-                    at,
-                    minus_g2_vy_leg * force_on_u2_leg
-                        + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
-                );
+                /// What must not vanish, at home.
+                static HOME_2: [::core::primitive::f64; 3] = [
+                    0.057484236969798944, 0.057484236969798944, 0.057484236969798944,
+                ];
+                for at in ::overact::lanes::places::<V, 3>(lanes) {
+                    // --- the legs' own
+                    let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
+                    // --- numbers in which the legs differ, for the legs of this turn
+                    let of_leg = [
+                        ::overact::lanes::row(&OF_LEG[0], at),
+                        ::overact::lanes::row(&OF_LEG[1], at),
+                        ::overact::lanes::row(&OF_LEG[2], at),
+                        ::overact::lanes::row(&OF_LEG[3], at),
+                    ];
+                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
+                    let own_parameters = [
+                        ::overact::lanes::scattered(parameters, [8, 10], at),
+                        ::overact::lanes::scattered(parameters, [0, 10], at),
+                        ::overact::lanes::scattered(parameters, [1, 10], at),
+                        ::overact::lanes::scattered(parameters, [6, 10], at),
+                        ::overact::lanes::scattered(parameters, [7, 10], at),
+                        ::overact::lanes::scattered(parameters, [5, 10], at),
+                        ::overact::lanes::scattered(parameters, [9, 10], at),
+                        ::overact::lanes::scattered(parameters, [2, 10], at),
+                        ::overact::lanes::scattered(parameters, [3, 10], at),
+                        ::overact::lanes::scattered(parameters, [4, 10], at),
+                    ];
+                    let mut failed = ::overact::lanes::Failed::none();
+                    // --- leg
+                    let t1_leg = pose[0] - of_leg[0];
+                    let t2_leg = pose[1] - of_leg[2];
+                    let d_x_leg = of_leg[1] * t1_leg + of_leg[3] * t2_leg;
+                    let d_y_leg = of_leg[1] * t2_leg - of_leg[3] * t1_leg;
+                    let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
+                    ::overact::lanes::leg(
+                        &mut failed,
+                        rho_squared_leg,
+                        &HOME_0,
+                        &LEGS,
+                        at,
+                    );
+                    let h_squared_leg = L_1_SQUARED / rho_squared_leg - 0.25;
+                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
+                    let l2_x_leg = d_x_leg - l1_x_leg;
+                    let c12_leg = INV_L_1 * l2_x_leg;
+                    let l1_y_leg = 0.5 * d_y_leg - d_x_leg * h_leg;
+                    let l2_y_leg = d_y_leg - l1_y_leg;
+                    let s12_leg = INV_L_1 * l2_y_leg;
+                    let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
+                    let det_leg = rho_squared_leg * h_leg;
+                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    let k_leg = L_1 / det_leg;
+                    let g1_vx_leg = minus_fk1_x_leg * k_leg;
+                    let masses_leg_1_1 = own_parameters[1]
+                        + L_1_SQUARED * own_parameters[0] + own_parameters[2];
+                    let c1_leg = INV_L_1 * l1_x_leg;
+                    let s1_leg = INV_L_1 * l1_y_leg;
+                    let fk2_x_leg = of_leg[1] * c1_leg - of_leg[3] * s1_leg;
+                    let minus_g2_vx_leg = fk2_x_leg * k_leg;
+                    let c2_leg = 8.680555555555555
+                        * (rho_squared_leg - TWICE_L_1_SQUARED);
+                    let s2_leg = INV_L_1_SQUARED * det_leg;
+                    let force1_y_by_2_leg = c2_leg * own_parameters[3]
+                        - s2_leg * own_parameters[4];
+                    let masses_leg_1_2 = L_1 * force1_y_by_2_leg;
+                    let minus_fk1_y_leg = of_leg[1] * s12_leg + of_leg[3] * c12_leg;
+                    let g1_vy_leg = minus_fk1_y_leg * k_leg;
+                    let fk2_y_leg = of_leg[1] * s1_leg + of_leg[3] * c1_leg;
+                    let minus_g2_vy_leg = fk2_y_leg * k_leg;
+                    let t3_leg = g1_vy_leg * masses_leg_1_1
+                        - minus_g2_vy_leg * masses_leg_1_2;
+                    let t4_leg = g1_vy_leg * masses_leg_1_2
+                        - minus_g2_vy_leg * own_parameters[5];
+                    let rate_1_leg = g1_vx_leg * twist[0] + g1_vy_leg * twist[1];
+                    let rate_1_squared_leg = rate_1_leg * rate_1_leg;
+                    let bias_a_on_f2_leg = L_1 * rate_1_squared_leg;
+                    let minus_rate_2_leg = minus_g2_vx_leg * twist[0]
+                        + minus_g2_vy_leg * twist[1];
+                    let rate_2_squared_leg = minus_rate_2_leg * minus_rate_2_leg;
+                    let minus_bias_a_on_f1_leg = L_1 * rate_2_squared_leg;
+                    let minus_bias_rate_dot_2_leg = k_leg
+                        * (bias_a_on_f2_leg + c2_leg * minus_bias_a_on_f1_leg);
+                    let t5_leg = own_parameters[3] * minus_bias_rate_dot_2_leg;
+                    let t6_leg = own_parameters[4] * rate_2_squared_leg;
+                    let moment2_z_leg = L_1 * (t5_leg - t6_leg)
+                        - own_parameters[5] * minus_bias_rate_dot_2_leg;
+                    let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
+                    let minus_tau_2_leg = ::overact::lanes::signed(
+                        own_parameters[6],
+                        minus_qd_2_leg,
+                        at,
+                    );
+                    let force_on_u2_leg = moment2_z_leg - minus_tau_2_leg;
+                    let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
+                        - own_parameters[3] * rate_2_squared_leg;
+                    let minus_force2_y_leg = t5_leg + t6_leg;
+                    let bias_rate_dot_1_leg = k_leg
+                        * (minus_bias_a_on_f1_leg + c2_leg * bias_a_on_f2_leg);
+                    let t7_leg = own_parameters[9]
+                        + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
+                        + own_parameters[7] * rate_1_leg
+                        + ::overact::lanes::signed(own_parameters[8], rate_1_leg, at)
+                        + bias_rate_dot_1_leg * masses_leg_1_1;
+                    let force_on_u1_leg = minus_tau_2_leg + t7_leg;
+                    let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
+                    failed.told()?;
+                    ::overact::lanes::put(
+                        &mut added[0],
+                        [0, 1],
+                        at,
+                        g1_vx_leg
+                            * (g1_vx_leg * masses_leg_1_1
+                                - minus_g2_vx_leg * masses_leg_1_2)
+                            - minus_g2_vx_leg
+                                * (g1_vx_leg * masses_leg_1_2
+                                    - minus_g2_vx_leg * own_parameters[5]),
+                    );
+                    ::overact::lanes::put(
+                        &mut added[1],
+                        [0, 1],
+                        at,
+                        g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
+                    );
+                    ::overact::lanes::put(
+                        &mut added[2],
+                        [0, 1],
+                        at,
+                        g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
+                    );
+                    ::overact::lanes::put(
+                        &mut added[3],
+                        [0, 1],
+                        at,
+                        minus_g2_vx_leg * force_on_u2_leg
+                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
+                    );
+                    ::overact::lanes::put(
+                        &mut added[4],
+                        [0, 1],
+                        at,
+                        minus_g2_vy_leg * force_on_u2_leg
+                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
+                    );
+                }
+                // --- what all share and what the legs add, added up
+                let sums = [
+                    parameters[30] + ::overact::lanes::sum(&added[0]),
+                    ::overact::lanes::sum(&added[1]),
+                    parameters[30] + ::overact::lanes::sum(&added[2]),
+                    ::overact::lanes::sum(&added[3]), ::overact::lanes::sum(&added[4]),
+                ];
+                let output = {
+                    let inv_pivot_1 = 1.0 / sums[0];
+                    ::overact::guard::mass(sums[0])?;
+                    let l_2_1 = sums[1] * inv_pivot_1;
+                    let pivot_2 = sums[2] - sums[1] * l_2_1;
+                    ::overact::guard::mass(pivot_2)?;
+                    let t1 = (sums[4] - l_2_1 * sums[3]) / pivot_2;
+                    [inv_pivot_1 * sums[3] - l_2_1 * t1, t1]
+                };
+                ::core::result::Result::Ok(output)
             }
-            // --- what all share and what the legs add, added up
-            let sums = [
-                parameters[30] + ::overact::lanes::sum(&added[0]), ::overact::lanes::sum(&added[1]),
-                parameters[30] + ::overact::lanes::sum(&added[2]), ::overact::lanes::sum(&added[3]),
-                ::overact::lanes::sum(&added[4]),
-            ];
-            let output = {
-                let inv_pivot_1 = 1.0 / sums[0];
-                ::overact::guard::mass(sums[0])?;
-                let l_2_1 = sums[1] * inv_pivot_1;
-                let pivot_2 = sums[2] - sums[1] * l_2_1;
-                ::overact::guard::mass(pivot_2)?;
-                let t1 = (sums[4] - l_2_1 * sums[3]) / pivot_2;
-                [inv_pivot_1 * sums[3] - l_2_1 * t1, t1]
-            };
-            return ::core::result::Result::Ok(output);
+        }
+        if ::overact::lanes::four() {
+            return ::overact::lanes::few(Legs {
+                pose,
+                twist,
+                torques,
+                parameters,
+            });
         }
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1²
         const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -6434,27 +7042,25 @@ impl ThreeLegPoint {
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2 + INV_TWICE_L_1 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
+        let v2_by_1_y_leg2 = INV_TWICE_L_1 * t2_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
             * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
@@ -6485,23 +7091,21 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3 + INV_TWICE_L_1 * l1_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
@@ -6627,214 +7231,237 @@ impl ThreeLegPoint {
                 ("base_parameters", base_parameters),
             ],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let t2_leg2 = y_plus_half_radius * INV_L_1;
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg2;
-        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
-            + minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
-            + base_parameters[12];
-        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
-        let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
-            + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
-        let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
-        // --- leg2
-        let t3_leg2 = pose[0] + 0.3031088913245535;
-        let minus_d_x_leg2 = 0.8660254037844386 * t3_leg2 + t1_leg2;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = t3_leg2 * INV_L_1 - minus_fk1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg2;
-        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
-            + base_parameters[11];
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
-        let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
-            + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
-        let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
-        let force_on_u1_leg1 = minus_tau_2_leg1
-            + base_parameters[1] * bias_rate_dot_1_leg1
-            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
-        let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
-        let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
-            + bias_a_on_f1_leg3 * base_parameters[18];
-        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
-        let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
-        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
-        let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
-            + minus_bias_a_on_f1_leg2 * base_parameters[17];
-        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
-        let t1 = g1_vx_leg3 * tau1_minus_force_on_u1_leg3
-            + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
-            + minus_g1_vx_leg1 * force_on_u1_minus_tau1_leg1
-            + minus_g2_vx_leg3 * force_on_u2_leg3 + minus_g2_vx_leg2 * force_on_u2_leg2
-            - minus_g2_vx_leg1 * minus_force_on_u2_leg1;
-        let t4_leg2 = minus_g2_vx_leg1
-            * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
-            - minus_g1_vx_leg1
-                * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
-                    - minus_g1_vx_leg1 * base_parameters[1])
-            + g1_vx_leg2
-                * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
-            + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * base_parameters[17]
-                    + minus_g2_vx_leg2 * base_parameters[14]);
-        let t2_leg3 = t4_leg2
-            + g1_vx_leg3
-                * (g1_vx_leg3 * base_parameters[3]
-                    + minus_fk2_x_leg3 * base_parameters[18])
-            + minus_g2_vx_leg3
-                * (fk1_x_leg3 * base_parameters[18]
-                    + minus_g2_vx_leg3 * base_parameters[15]);
-        let mass_1_1 = t2_leg3 + base_parameters[0];
-        ::overact::guard::mass(mass_1_1)?;
-        let inv_pivot_1 = 1.0 / mass_1_1;
-        let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
-            + minus_g2_vy_leg1 * base_parameters[13];
-        let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
-        let t5_leg2 = minus_fk2_y_leg2 * base_parameters[17]
-            - g1_vy_leg2 * base_parameters[2];
-        let t6_leg2 = g2_vy_leg2 * base_parameters[14]
-            - minus_fk1_y_leg2 * base_parameters[17];
-        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            - minus_fk2_y_leg3 * base_parameters[18];
-        let t4_leg3 = minus_fk1_y_leg3 * base_parameters[18]
-            - minus_g2_vy_leg3 * base_parameters[15];
-        let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
-            - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
-            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
-        let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t2 = g1_vy_leg2 * tau1_minus_force_on_u1_leg2
-            + minus_g2_vy_leg3 * force_on_u2_leg3
-            - (minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2)
-            - g1_vy_leg1 * force_on_u1_minus_tau1_leg1
-            - minus_g1_vy_leg3 * tau1_minus_force_on_u1_leg3;
-        let t5_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
-            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t3_leg3
-            - minus_g2_vy_leg3 * t4_leg3;
-        let mass_2_2 = t5_leg3 + base_parameters[0];
-        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let t3 = (t2 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg3
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let t2_leg2 = y_plus_half_radius * INV_L_1;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg2;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+                + minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg3 = k_leg3
+                * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
+                + base_parameters[12];
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                base_parameters[21],
+                -minus_qd_2_leg3,
+            );
+            let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
+                + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3
+                - tau_2_leg3;
+            let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
+            // --- leg2
+            let t3_leg2 = pose[0] + 0.3031088913245535;
+            let minus_d_x_leg2 = 0.8660254037844386 * t3_leg2 + t1_leg2;
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let fk2_x_leg2 = t3_leg2 * INV_L_1 - minus_fk1_x_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg2;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg2 = k_leg2
+                * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
+                + base_parameters[11];
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                base_parameters[20],
+                qd_2_leg2,
+            );
+            let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
+                + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+            let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                base_parameters[19],
+                minus_qd_2_leg1,
+            );
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let bias_rate_dot_1_leg1 = k_leg1
+                * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
+                + base_parameters[10];
+            let force_on_u1_leg1 = minus_tau_2_leg1
+                + base_parameters[1] * bias_rate_dot_1_leg1
+                + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
+            let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
+            let minus_bias_rate_dot_2_leg3 = k_leg3
+                * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let minus_moment2_z_leg3 = base_parameters[15]
+                * minus_bias_rate_dot_2_leg3
+                + bias_a_on_f1_leg3 * base_parameters[18];
+            let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let minus_bias_rate_dot_2_leg1 = k_leg1
+                * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_moment2_z_leg1 = base_parameters[13]
+                * minus_bias_rate_dot_2_leg1
+                + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
+            let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+            let minus_bias_rate_dot_2_leg2 = k_leg2
+                * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_moment2_z_leg2 = base_parameters[14]
+                * minus_bias_rate_dot_2_leg2
+                + minus_bias_a_on_f1_leg2 * base_parameters[17];
+            let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+            let t1 = g1_vx_leg3 * tau1_minus_force_on_u1_leg3
+                + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
+                + minus_g1_vx_leg1 * force_on_u1_minus_tau1_leg1
+                + minus_g2_vx_leg3 * force_on_u2_leg3
+                + minus_g2_vx_leg2 * force_on_u2_leg2
+                - minus_g2_vx_leg1 * minus_force_on_u2_leg1;
+            let t4_leg2 = minus_g2_vx_leg1
+                * (minus_g2_vx_leg1 * base_parameters[13]
+                    - l2_y_leg1 * my_2_leg1_inv_l_1)
+                - minus_g1_vx_leg1
+                    * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
+                        - minus_g1_vx_leg1 * base_parameters[1])
+                + g1_vx_leg2
+                    * (g1_vx_leg2 * base_parameters[2]
+                        + fk2_x_leg2 * base_parameters[17])
+                + minus_g2_vx_leg2
+                    * (minus_fk1_x_leg2 * base_parameters[17]
+                        + minus_g2_vx_leg2 * base_parameters[14]);
+            let t2_leg3 = t4_leg2
+                + g1_vx_leg3
+                    * (g1_vx_leg3 * base_parameters[3]
+                        + minus_fk2_x_leg3 * base_parameters[18])
+                + minus_g2_vx_leg3
+                    * (fk1_x_leg3 * base_parameters[18]
+                        + minus_g2_vx_leg3 * base_parameters[15]);
+            let mass_1_1 = t2_leg3 + base_parameters[0];
+            ::overact::guard::mass(mass_1_1)?;
+            let inv_pivot_1 = 1.0 / mass_1_1;
+            let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
+                + minus_g2_vy_leg1 * base_parameters[13];
+            let t3_leg1 = g1_vy_leg1 * base_parameters[1]
+                + l1_x_leg1 * my_2_leg1_inv_l_1;
+            let t5_leg2 = minus_fk2_y_leg2 * base_parameters[17]
+                - g1_vy_leg2 * base_parameters[2];
+            let t6_leg2 = g2_vy_leg2 * base_parameters[14]
+                - minus_fk1_y_leg2 * base_parameters[17];
+            let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+                - minus_fk2_y_leg3 * base_parameters[18];
+            let t4_leg3 = minus_fk1_y_leg3 * base_parameters[18]
+                - minus_g2_vy_leg3 * base_parameters[15];
+            let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
+                - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
+                - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
+            let l_2_1 = mass_1_2 * inv_pivot_1;
+            let t2 = g1_vy_leg2 * tau1_minus_force_on_u1_leg2
+                + minus_g2_vy_leg3 * force_on_u2_leg3
+                - (minus_g2_vy_leg1 * minus_force_on_u2_leg1
+                    + g2_vy_leg2 * force_on_u2_leg2)
+                - g1_vy_leg1 * force_on_u1_minus_tau1_leg1
+                - minus_g1_vy_leg3 * tau1_minus_force_on_u1_leg3;
+            let t5_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
+                + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2
+                + minus_g1_vy_leg3 * t3_leg3 - minus_g2_vy_leg3 * t4_leg3;
+            let mass_2_2 = t5_leg3 + base_parameters[0];
+            let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+            ::overact::guard::mass(pivot_2)?;
+            let t3 = (t2 - t1 * l_2_1) / pivot_2;
+            ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+        })
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -6864,225 +7491,257 @@ impl ThreeLegPoint {
                 ("parameters", parameters), ("preload", preload),
             ],
         )?;
-        /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
-        /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
-        /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
-        /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-        /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
-        /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
-        let inv_det_ja = 1.0 / det_ja;
-        let t1 = minus_g1_vy_leg3 * inv_det_ja;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let t2 = g1_vx_leg3 * inv_det_ja;
-        let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
-        let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
-        let norm_3 = ::overact::math::sqrt(
-            1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
-        );
-        ::overact::guard::platform(
-            norm_3,
-            1.7320508075688772,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_norm_3 = 1.0 / norm_3;
-        let share_1_3_inv_norm_3 = share_1_3 * inv_norm_3;
-        // --- leg2
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let tau_1_leg2 = parameters[12] * rate_1_leg2
-            - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
-            - minus_rate_dot_1_leg2
-                * (parameters[10]
-                    + L_1_SQUARED * (parameters[18] - INV_L_1 * parameters[16]))
-            + tau_1_leg2 - tau_2_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-            - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        // --- leg1
-        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1;
-        let c2_leg1 = 8.680555555555555 * t1_leg1;
-        let minus_force2_y_leg1 = parameters[7] * rate_2_squared_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
-        let t3_leg1 = L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            - minus_rate_dot_1_leg1
-                * (parameters[0]
-                    + L_1_SQUARED * (parameters[8] - INV_L_1 * parameters[6]));
-        let tau_1_leg1 = parameters[2] * rate_1_leg1
-            - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1 + tau_1_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let moment2_z_leg1 = parameters[7] * minus_a2_x_leg1
-            - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
-        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg3
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_1_leg3 = k_leg3
-            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = rate_dot_1_leg3
-            * (parameters[20]
-                + L_1_SQUARED * (parameters[28] - INV_L_1 * parameters[26]))
-            - parameters[27] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - L_1 * parameters[26])
-            - parameters[27] * a_on_f1_leg3;
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t2_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
-            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t1_platform = parameters[30]
-            + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
-        let force_x_platform = acceleration[0] * t1_platform;
-        let t2_platform = t2_leg3 + force_x_platform;
-        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * t1_platform;
-        let t3_platform = t3_leg3 + force_y_platform;
-        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-        let t3 = t2_platform * minus_vx_by_a1 + t3_platform * minus_vy_by_a1;
-        let share_2_3_inv_norm_3 = share_2_3 * inv_norm_3;
-        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-        let t4 = t2_platform * minus_vx_by_a2 + t3_platform * minus_vy_by_a2;
-        let t5 = preload[0] - (share_1_3_inv_norm_3 * t3 + share_2_3_inv_norm_3 * t4);
-        ::core::result::Result::Ok([
-            -(share_1_3_inv_norm_3 * t5 + t3), -(share_2_3_inv_norm_3 * t5 + t4), inv_norm_3 * t5,
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// radius / 2
+            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            /// 1 / l_1
+            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            /// 1 / l_1²
+            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            /// 1 / (2 l_1)
+            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            /// l_1 = l_2
+            const L_1: ::core::primitive::f64 = 0.24;
+            /// l_1²
+            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            /// radius
+            const RADIUS: ::core::primitive::f64 = 0.35;
+            /// 2 l_1²
+            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            // --- leg2
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            let k_leg3 = L_1 / det_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let t1 = minus_g1_vy_leg3 * inv_det_ja;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let t2 = g1_vx_leg3 * inv_det_ja;
+            let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
+            let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
+            let norm_3 = ::overact::math::wide::sqrt(
+                1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
+            );
+            ::overact::guard::platform(
+                norm_3,
+                1.7320508075688772,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_norm_3 = 1.0 / norm_3;
+            let share_1_3_inv_norm_3 = share_1_3 * inv_norm_3;
+            // --- leg2
+            let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
+                - 3.608439182435161 * l1_x_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+                - minus_fk1_x_leg2 * acceleration[0];
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+            let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+            let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let tau_1_leg2 = parameters[12] * rate_1_leg2
+                - parameters[11] * minus_rate_dot_1_leg2
+                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+                + parameters[14];
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let tau_2_leg2 = ::overact::math::wide::signed(
+                parameters[19],
+                qd_2_leg2,
+            );
+            let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+                - minus_rate_dot_1_leg2
+                    * (parameters[10]
+                        + L_1_SQUARED * (parameters[18] - INV_L_1 * parameters[16]))
+                + tau_1_leg2 - tau_2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            // --- leg1
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let minus_tau_2_leg1 = ::overact::math::wide::signed(
+                parameters[9],
+                minus_qd_2_leg1,
+            );
+            let s2_leg1 = INV_L_1_SQUARED * det_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+            let t2_leg1 = 0.5 * t1_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1;
+            let c2_leg1 = 8.680555555555555 * t1_leg1;
+            let minus_force2_y_leg1 = parameters[7] * rate_2_squared_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            let t3_leg1 = L_1
+                * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+                - minus_rate_dot_1_leg1
+                    * (parameters[0]
+                        + L_1_SQUARED * (parameters[8] - INV_L_1 * parameters[6]));
+            let tau_1_leg1 = parameters[2] * rate_1_leg1
+                - parameters[1] * minus_rate_dot_1_leg1
+                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                + parameters[4];
+            let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1 + tau_1_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let moment2_z_leg1 = parameters[7] * minus_a2_x_leg1
+                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+            // --- leg3
+            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+                - minus_fk1_y_leg3 * acceleration[1];
+            let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
+                - 3.608439182435161 * l1_y_leg3;
+            let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+            let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+                + INV_TWICE_L_1 * l1_y_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+            let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+                - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+            let tau_1_leg3 = parameters[21] * rate_dot_1_leg3
+                + parameters[22] * rate_1_leg3
+                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
+                + parameters[24];
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            let tau_2_leg3 = ::overact::math::wide::signed(
+                parameters[29],
+                qd_2_leg3,
+            );
+            let force_on_u1_leg3 = rate_dot_1_leg3
+                * (parameters[20]
+                    + L_1_SQUARED * (parameters[28] - INV_L_1 * parameters[26]))
+                - parameters[27] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let moment2_z_leg3 = rate_dot_2_leg3
+                * (parameters[25] - L_1 * parameters[26])
+                - parameters[27] * a_on_f1_leg3;
+            let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+            let t2_leg3 = g1_vx_leg2 * force_on_u1_leg2
+                - minus_g2_vx_leg2 * force_on_u2_leg2
+                - (minus_g1_vx_leg1 * force_on_u1_leg1
+                    + minus_g2_vx_leg1 * force_on_u2_leg1)
+                + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            let t1_platform = parameters[30]
+                + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+            let force_x_platform = acceleration[0] * t1_platform;
+            let t2_platform = t2_leg3 + force_x_platform;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+                - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+                - minus_g1_vy_leg3 * force_on_u1_leg3;
+            let force_y_platform = acceleration[1] * t1_platform;
+            let t3_platform = t3_leg3 + force_y_platform;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let t3 = t2_platform * minus_vx_by_a1 + t3_platform * minus_vy_by_a1;
+            let share_2_3_inv_norm_3 = share_2_3 * inv_norm_3;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let t4 = t2_platform * minus_vx_by_a2 + t3_platform * minus_vy_by_a2;
+            let t5 = preload[0]
+                - (share_1_3_inv_norm_3 * t3 + share_2_3_inv_norm_3 * t4);
+            ::core::result::Result::Ok([
+                -(share_1_3_inv_norm_3 * t5 + t3), -(share_2_3_inv_norm_3 * t5 + t4),
+                inv_norm_3 * t5,
+            ])
+        })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
@@ -7103,6 +7762,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -7136,8 +7797,7 @@ impl ThreeLegPoint {
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
@@ -7151,8 +7811,7 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
@@ -7160,9 +7819,9 @@ impl ThreeLegPoint {
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
@@ -7210,6 +7869,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -7231,7 +7892,7 @@ impl ThreeLegPoint {
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
+            + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
@@ -7242,8 +7903,7 @@ impl ThreeLegPoint {
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
@@ -7265,8 +7925,7 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
@@ -7278,7 +7937,7 @@ impl ThreeLegPoint {
         )?;
         let inv_det_ja = 1.0 / det_ja;
         let t1 = minus_g1_vy_leg3 * inv_det_ja;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let t2 = g1_vx_leg3 * inv_det_ja;
         let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;

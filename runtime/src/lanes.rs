@@ -4,14 +4,17 @@
 //! is needed to be full: what it computes once more is the same. Where there are fewer, the lanes that are left have the
 //! last leg once more. In builds that are not optimised, where vectors are slower than numbers, there is one lane.
 
+#[cfg(dispatch)]
+mod detected;
 mod guards;
 mod number;
 mod operators;
+mod side_by_side;
 mod vector;
 
-use core::marker::PhantomData;
 pub use guards::{Failed, closed, leg, reach};
 pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
+pub use side_by_side::{SideBySide, few, four, many};
 pub use vector::{Few, Many, Vector};
 
 /// A number of each of as many legs as a vector has lanes.
@@ -22,21 +25,34 @@ impl<V: Vector> Lanes<V> {
     /// The same number of every leg.
     #[inline(always)]
     #[must_use]
-    pub fn all(number: f64) -> Self {
-        Self(V::all(number))
+    pub fn all(proof: V::Proof, number: f64) -> Self {
+        Self(V::all(proof, number))
     }
 }
 
-impl<V: Vector> From<f64> for Lanes<V> {
+/// What is a number of each leg: one of each, or the same one of all.
+pub trait OfLegs<V: Vector> {
+    /// The number of each.
+    fn of_legs(self, proof: V::Proof) -> V;
+}
+
+impl<V: Vector> OfLegs<V> for Lanes<V> {
     #[inline(always)]
-    fn from(number: f64) -> Self {
-        Self::all(number)
+    fn of_legs(self, _: V::Proof) -> V {
+        self.0
+    }
+}
+
+impl<V: Vector> OfLegs<V> for f64 {
+    #[inline(always)]
+    fn of_legs(self, proof: V::Proof) -> V {
+        V::all(proof, self)
     }
 }
 
 /// A turn of a function of `LEGS` legs: which of them are in its lanes.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn<V, const LEGS: usize>(usize, PhantomData<V>);
+pub struct Turn<V: Vector, const LEGS: usize>(usize, V::Proof);
 
 impl<V: Vector, const LEGS: usize> Turn<V, LEGS> {
     /// The leg in a lane.
@@ -52,26 +68,15 @@ impl<V: Vector, const LEGS: usize> Turn<V, LEGS> {
     }
 }
 
-/// Whether four legs and more run side by side.
-pub const FOUR: bool = Few::WIDTH >= 4;
-
-/// The turns in which `LEGS` legs are gone through, as many at once as the processor's registers hold numbers.
+/// The turns in which `LEGS` legs are gone through, as many at once as vectors have lanes.
 #[inline(always)]
-pub fn places<const LEGS: usize>() -> impl Iterator<Item = Turn<Many, LEGS>> {
-    turns()
-}
-
-/// The turns in which `LEGS` legs are gone through, at most four at once: of so few a wider register would be half empty.
-#[inline(always)]
-pub fn places_of_few<const LEGS: usize>() -> impl Iterator<Item = Turn<Few, LEGS>> {
-    turns()
-}
-
-#[inline(always)]
-fn turns<V: Vector, const LEGS: usize>() -> impl Iterator<Item = Turn<V, LEGS>> {
+pub fn places<V: Vector, const LEGS: usize>(
+    proof: V::Proof,
+) -> impl Iterator<Item = Turn<V, LEGS>> {
     const { assert!(LEGS > 0, "no legs") };
     let last = LEGS.saturating_sub(V::WIDTH);
-    (0..LEGS.div_ceil(V::WIDTH)).map(move |turn| Turn((turn * V::WIDTH).min(last), PhantomData))
+    let turn = move |turn: usize| Turn((turn * V::WIDTH).min(last), proof);
+    (0..LEGS.div_ceil(V::WIDTH)).map(turn)
 }
 
 /// The numbers of the legs of a turn, of a row that has those of all legs.
@@ -79,8 +84,9 @@ fn turns<V: Vector, const LEGS: usize>() -> impl Iterator<Item = Turn<V, LEGS>> 
 #[must_use]
 pub fn row<V: Vector, const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<V, LEGS>) -> Lanes<V> {
     if LEGS >= V::WIDTH {
-        let found = numbers.get(at.0..).and_then(V::first_of);
-        return Lanes(found.unwrap_or_else(|| V::all(0.0)));
+        let own = numbers.get(at.0..);
+        let found = own.and_then(|own| V::first_of(at.1, own));
+        return Lanes(found.unwrap_or_else(|| V::all(at.1, 0.0)));
     }
     scattered(numbers, [0, 1], at)
 }
@@ -105,7 +111,7 @@ pub fn scattered<const LENGTH: usize, V: Vector, const LEGS: usize>(
     at: Turn<V, LEGS>,
 ) -> Lanes<V> {
     let of_lane = |lane: usize| array.get(first + at.leg(lane) * stride).copied();
-    Lanes(V::of(|lane| of_lane(lane).unwrap_or(0.0)))
+    Lanes(V::of(at.1, |lane| of_lane(lane).unwrap_or(0.0)))
 }
 
 /// An element of each of the legs of a turn, as [`scattered`], of an array in which only the first `count` legs have one;
@@ -122,7 +128,7 @@ pub fn scattered_of_first<const LENGTH: usize, V: Vector, const LEGS: usize>(
         true => array.get(first + leg * stride).copied(),
         false => None,
     };
-    Lanes(V::of(|lane| of_leg(at.leg(lane)).unwrap_or(0.0)))
+    Lanes(V::of(at.1, |lane| of_leg(at.leg(lane)).unwrap_or(0.0)))
 }
 
 /// The sum over all legs: halves are added until one number is left, whatever the number of lanes.
@@ -149,9 +155,9 @@ pub fn put_of_first<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     [first, stride]: [usize; 2],
     count: usize,
     at: Turn<V, LEGS>,
-    value: impl Into<Lanes<V>>,
+    value: impl OfLegs<V>,
 ) {
-    let numbers = value.into().0;
+    let numbers = value.of_legs(at.1);
     for lane in 0..V::WIDTH.min(LEGS) {
         let leg = at.0 + lane;
         if leg >= count {
@@ -170,9 +176,9 @@ pub fn put<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     row: &mut [f64; COLUMNS],
     [first, stride]: [usize; 2],
     at: Turn<V, LEGS>,
-    value: impl Into<Lanes<V>>,
+    value: impl OfLegs<V>,
 ) {
-    let numbers = value.into().0;
+    let numbers = value.of_legs(at.1);
     if stride == 1 && LEGS >= V::WIDTH {
         if let Some(place) = row.get_mut(first + at.0..) {
             numbers.put(place);

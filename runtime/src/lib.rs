@@ -5,7 +5,8 @@
 //!
 //! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
 //! trigonometry come from the standard library, with the feature `libm` and without `std` from the crate of
-//! that name.
+//! that name. With the feature `dispatch` (default) optimised programs for any x86-64 find out when they run whether the
+//! processor has AVX2 or AVX-512, and use them: long functions are compiled once or twice more.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
@@ -23,6 +24,7 @@ pub mod lanes;
 pub mod math;
 pub mod model;
 pub mod partition;
+mod widest;
 
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
@@ -31,3 +33,4 @@ pub use overact_core::{
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;
+pub use widest::widest;

@@ -1,8 +1,9 @@
 //! Legs that run side by side give what straight code gives: the same numbers but for rounding, and of several legs
 //! that fail the same one is told.
 //!
-//! Vectors are taken in optimised builds only, so a program of its own is built with optimisation, for the
-//! processor's smallest vectors and for those of AVX and of AVX-512. Only the full tier does this: it takes a minute.
+//! Vectors are taken in optimised builds only, so a program of its own is built with optimisation: for the processor's
+//! smallest vectors, for those that it finds out when it runs, and for those of AVX-512 alone. Only the full tier does
+//! this: it takes a minute.
 
 use overact_codegen::{Effort, Request, compile_with, emission};
 use overact_tests::support::{Failure, description, repository};
@@ -48,7 +49,8 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     let runtime = repository("runtime");
     let manifest = format!(
         "[package]\nname = \"side_by_side\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
-         overact = {{ path = '{}', default-features = false, features = [\"std\"] }}\n\n[workspace]\n",
+         overact = {{ path = '{}', default-features = false, features = [\"std\"] }}\n\n\
+         [features]\ndispatch = [\"overact/dispatch\"]\n\n[workspace]\n",
         runtime.display()
     );
     fs::write(folder.join("Cargo.toml"), manifest)?;
@@ -60,13 +62,11 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
             fs::write(folder.join(format!("src/{stem}_{name}.rs")), text)?;
         }
     }
-    run(&folder, "")?;
-    if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
-        run(&folder, "-Ctarget-feature=+avx2")?;
-    }
+    run(&folder, "", &[])?;
+    run(&folder, "", &["--features", "dispatch"])?;
     // All of AVX-512 that such processors have in common: `wide` does not compile with a part of it.
     if has_v4() {
-        run(&folder, "-Ctarget-cpu=x86-64-v4")?;
+        run(&folder, "-Ctarget-cpu=x86-64-v4", &[])?;
     }
     Ok(())
 }
@@ -95,16 +95,20 @@ fn module(stem: &str, side_by_side: bool) -> Result<String, Failure> {
     Ok(emission::file(&compiled.model, &source.name))
 }
 
-fn run(folder: &Path, flags: &str) -> Result<(), Failure> {
+fn run(folder: &Path, flags: &str, features: &[&str]) -> Result<(), Failure> {
     let run = Command::new(env!("CARGO"))
         .current_dir(folder)
         .env("CARGO_TARGET_DIR", folder.join("target"))
         .env("RUSTFLAGS", flags)
         .args(["run", "--release", "--offline", "--quiet"])
+        .args(features)
         .output()?;
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     let failed = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(run.status.success(), "{flags}: {said}\n{failed}");
+    assert!(
+        run.status.success(),
+        "{flags} {features:?}: {said}\n{failed}"
+    );
     assert!(said.contains("agree"), "{said}");
     Ok(())
 }

@@ -18,9 +18,8 @@ pub struct Written {
 
 /// Statements and value of a body whose inputs and output are these.
 #[must_use]
-pub fn write(body: &Body, inputs: &[Array], output: &Array, float: Float) -> Written {
-    let writer = Writer::new(inputs, float);
-    let constants = constants(body, float);
+pub(super) fn write(writer: &Writer<'_>, body: &Body, output: &Array) -> Written {
+    let constants = constants(body, writer.float);
     let statements = body.statements.iter().map(|s| writer.statement(s));
     Written {
         statements: quote!(#constants #(#statements)*),
@@ -65,6 +64,18 @@ impl<'a> Writer<'a> {
             float,
             math,
             of_legs: TokenStream::new(),
+        }
+    }
+
+    /// Of a body that is compiled for wider vectors, too.
+    pub(super) fn wide(inputs: &'a [Array], float: Float) -> Self {
+        let narrow = Self::new(inputs, float);
+        match float {
+            Float::F64 => Self {
+                math: quote!(::overact::math::wide),
+                ..narrow
+            },
+            Float::F32 => narrow,
         }
     }
 

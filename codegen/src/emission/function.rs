@@ -1,7 +1,8 @@
 //! One generated function: documentation, signature, body.
 
 use super::boundary::boundary;
-use super::expression;
+use super::expression::{self, Writer};
+use super::lanes::{self, Work};
 use super::layout::Sections;
 use crate::float::Float;
 use crate::lowering::{Array, Pays};
@@ -10,6 +11,7 @@ use crate::writing::body::Body;
 use crate::writing::labels::Labels;
 use crate::writing::operations;
 use crate::writing::outline::{Outline, Table};
+use overact_core::Function;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -41,45 +43,84 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             names: Vec::new(),
         };
     }
-    let lanes = function.lanes.as_ref();
-    let side_by_side = lanes.map(|lanes| (lanes.pays, super::lanes::write(model, function, lanes)));
-    let (before, starts, names) = match side_by_side {
-        Some((Pays::Always, written)) => {
-            let value = written.value;
-            let value = quote!(::core::result::Result::Ok(#value));
-            return Item {
-                tokens: around(model, function, &outline, &written.statements, &value),
-                sections: written.sections,
-                names: written.names,
-            };
-        }
-        Some((Pays::WithFour, written)) => {
-            let (statements, value) = (written.statements, written.value);
-            let before = quote! {
-                if ::overact::lanes::FOUR {
-                    #statements
-                    return ::core::result::Result::Ok(#value);
-                }
-            };
-            (before, written.sections.starts, written.names)
-        }
-        None => (TokenStream::new(), Vec::new(), Vec::new()),
+    let Some(lanes) = &function.lanes else {
+        return straight(model, function, &outline, TokenStream::new());
     };
+    let written = lanes::write(model, function, lanes);
+    let Work { item, value } = Work::new(function, lanes, &written);
+    if lanes.pays == Pays::Always {
+        return Item {
+            tokens: around(model, function, &outline, &item, &value),
+            sections: written.sections,
+            names: written.names,
+        };
+    }
+    let before = quote! {
+        #item
+        if ::overact::lanes::four() {
+            return #value;
+        }
+    };
+    let mut both = straight(model, function, &outline, before);
+    both.sections.starts.splice(..0, written.sections.starts);
+    both.names.splice(..0, written.names);
+    both
+}
+
+/// The function with the statements of its program, behind others.
+fn straight(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    outline: &Outline<'_>,
+    before: TokenStream,
+) -> Item {
     let program = &function.program;
     // A word of Rust is no name that the derivation gives.
     let body = Body::write(program, &Labels::new(model, function), &|_| false);
-    let written = expression::write(&body, &program.inputs, &program.output, model.float);
+    let is_wide = is_wide(model, function);
+    let writer = match is_wide {
+        true => Writer::wide(&program.inputs, model.float),
+        false => Writer::new(&program.inputs, model.float),
+    };
+    let written = expression::write(&writer, &body, &program.output);
     let (statements, value) = (written.statements, written.value);
-    let statements = quote!(#before #statements);
     let value = quote!(::core::result::Result::Ok(#value));
+    let (statements, value) = match is_wide {
+        true => (
+            before,
+            quote!(::overact::widest(#[inline(always)] || { #statements #value })),
+        ),
+        false => (quote!(#before #statements), value),
+    };
     Item {
-        tokens: around(model, function, &outline, &statements, &value),
+        tokens: around(model, function, outline, &statements, &value),
         sections: Sections {
             function: function.name.clone(),
-            starts: starts.into_iter().chain(body.sections).collect(),
+            starts: body.sections,
         },
-        names: names.into_iter().chain(body.names).collect(),
+        names: body.names,
     }
+}
+
+/// Operations from which on a straight function is compiled for wider vectors, too. Shorter ones gain no more than the
+/// question costs which of them are there.
+const WIDE: usize = 150;
+
+/// Whether the straight program takes wider vectors where there are some. It does not where legs run side by side then,
+/// nor as a step of an iteration: positions and Jacobians wait for one root and quotient after the other, so that builds
+/// for wider vectors are no faster there.
+fn is_wide(model: &RobotModel, function: &CompiledFunction) -> bool {
+    let is_of_steps = matches!(
+        function.computes,
+        Function::Joints
+            | Function::ActuatorPositions
+            | Function::InverseJacobian
+            | Function::PoseInClosedForm
+            | Function::PoseStep
+            | Function::BlockedError
+            | Function::BlockedJacobian
+    );
+    function.lanes.is_none() && !is_of_steps && model.cost(function).once.operations() >= WIDE
 }
 
 /// The function with these statements and this value.

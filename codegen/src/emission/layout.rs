@@ -97,6 +97,43 @@ pub(crate) fn pack_arrays(code: &str) -> String {
     out
 }
 
+/// Puts the head of a closure that is inlined, which the pretty printer writes on three lines, on one, and its body where
+/// that of a block stands.
+#[must_use]
+pub(crate) fn join_closures(code: &str) -> String {
+    let mut out = String::with_capacity(code.len());
+    let mut lines = code.lines().peekable();
+    // The indentation of the call whose closure is open.
+    let mut open: Option<usize> = None;
+    while let Some(line) = lines.next() {
+        let text = line.trim_start();
+        let indent = line.len() - text.len();
+        let Some(outer) = open else {
+            let is_head = text.ends_with('(')
+                && lines
+                    .next_if(|next| next.trim() == "#[inline(always)]")
+                    .is_some();
+            match is_head.then(|| lines.next()).flatten() {
+                Some(closure) => {
+                    let closure = closure.trim_start();
+                    push_line(&mut out, &format!("{line}#[inline(always)] {closure}"));
+                    open = Some(indent);
+                }
+                None => push_line(&mut out, line),
+            }
+            continue;
+        };
+        if indent == outer + 4 && text == "}," {
+            let end = lines.next().unwrap_or_default().trim_start();
+            push_line(&mut out, &format!("{:outer$}}}{end}", ""));
+            open = None;
+        } else {
+            push_line(&mut out, line.strip_prefix("    ").unwrap_or(line));
+        }
+    }
+    out
+}
+
 fn push_line(out: &mut String, line: &str) {
     out.push_str(line);
     out.push('\n');
@@ -110,6 +147,15 @@ fn is_balanced(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn closures_begin_on_the_line_of_their_call() {
+        let code = "fn f() {\n    a::widest(\n        #[inline(always)]\n        || {\n            \
+                    let x = g(\n                [1],\n            );\n            x\n        },\n    )\n}\n";
+        let wanted = "fn f() {\n    a::widest(#[inline(always)] || {\n        \
+                      let x = g(\n            [1],\n        );\n        x\n    })\n}\n";
+        assert_eq!(super::join_closures(code), wanted);
+    }
+
     #[test]
     fn elements_share_lines_and_nothing_is_lost() {
         let code = "let x = [\n    a,\n    b * c,\n    [\n        1.0,\n        2.0,\n    ],\n    d,\n];\n";

@@ -193,7 +193,7 @@ pub fn file(model: &RobotModel, label: &str) -> String {
     // The tokens are our own: that they parse is proved by every test that compiles them.
     let code = match syn::parse2(tokens.clone()) {
         Ok(file) => layout::with_headings(
-            &layout::pack_arrays(&prettyplease::unparse(&file)),
+            &layout::pack_arrays(&layout::join_closures(&prettyplease::unparse(&file))),
             &sections,
         ),
         Err(_) => tokens.to_string(),

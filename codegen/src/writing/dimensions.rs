@@ -2,7 +2,8 @@
 //!
 //! Folding turns the numbers of a description into others. Those that are a simple expression of its named
 //! constants, a power, product or quotient of two of them, get a name and the expression. Of equally simple
-//! expressions with one value none is taken, for which was meant cannot be told.
+//! expressions with one value none is taken, for which was meant cannot be told; and a number of one or two digits is
+//! by chance what a long expression gives.
 
 use crate::model::RobotModel;
 
@@ -21,6 +22,9 @@ pub struct Dimension {
 /// All numbers that have names.
 #[derive(Debug, Clone, Default)]
 pub struct Dimensions(Vec<Dimension>);
+
+/// Size of expressions that many numbers of few digits have as their value.
+const LONG: usize = 4;
 
 /// Two numbers that differ by less than this fraction are one: some roundings.
 const ROUNDING: f64 = 1e-15;
@@ -61,7 +65,7 @@ impl Dimensions {
                 all.extend((at < other_at).then(|| base.times(other)));
             }
         }
-        all.retain(|dimension| !stands_for_itself(dimension.value));
+        all.retain(|dimension| !stands_for_itself(dimension.value) && !is_by_chance(dimension));
         all.sort_by_key(|dimension| dimension.size);
         Self(all)
     }
@@ -79,6 +83,13 @@ impl Dimensions {
 /// Whether a number needs no name in any expression: twice something is no ratio of lengths, even if there is one of 2.
 fn stands_for_itself(value: f64) -> bool {
     [0.5, 1.0, 2.0].into_iter().any(|own| is_same(own, value))
+}
+
+/// Whether a long expression has a value of one or two digits, as 2.5, which others will have, too.
+fn is_by_chance(dimension: &Dimension) -> bool {
+    let value = dimension.value;
+    let tens = 10.0_f64.powf(1.0 - value.log10().floor());
+    dimension.size >= LONG && is_same(value * tens, (value * tens).round())
 }
 
 fn is_same(a: f64, b: f64) -> bool {
@@ -115,6 +126,12 @@ impl Base {
             self.dimension(&format!("inv_{n}"), &format!("1 / {n}"), 1.0 / v, 2),
             self.dimension(&format!("half_{n}"), &format!("{n} / 2"), v / 2.0, 2),
             self.dimension(&format!("twice_{n}"), &format!("2 {n}"), 2.0 * v, 2),
+            self.dimension(
+                &format!("inv_twice_{n}"),
+                &format!("1 / (2 {n})"),
+                0.5 / v,
+                3,
+            ),
             self.dimension(
                 &format!("twice_{n}_squared"),
                 &format!("2 {n}²"),
@@ -195,6 +212,17 @@ mod tests {
         // 1.2 is twice b; 0.18 is a b and 2 a².
         assert_eq!(name(&values, 1.2).as_deref(), Some("TWICE_B: 2 b"));
         assert_eq!(name(&values, 0.18), None);
+        // 2.5 is r / l², and more likely 1 / (2 l) or a number.
+        let values = [("l", 0.2), ("r", 0.1)];
+        assert_eq!(
+            name(&values, 2.5).as_deref(),
+            Some("INV_TWICE_L: 1 / (2 l)")
+        );
+        assert_eq!(
+            name(&[("l", 0.4), ("r", 0.6)], 3.75),
+            Some("R_PER_L_SQUARED: r / l²".to_owned())
+        );
+        assert_eq!(name(&[("l", 0.5), ("r", 0.6)], 2.4), None);
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub fn of_function(cost: &WholeCost) -> Vec<String> {
                 " That is the straight program, which {others}. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
             ),
             _ => format!(
-                " That is the straight program, which {others}, and builds for processors without vectors of {lanes} numbers. With these (`-C target-cpu=native`) the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+                " That is the straight program, which {others}, and processors without vectors of {lanes} numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
             ),
         });
         lines.push(

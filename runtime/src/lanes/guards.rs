@@ -1,7 +1,7 @@
 //! What [`guard`] checks, in every lane. Of several legs that fail the first is told, as where legs are computed one
 //! after the other, though another one may have failed in an earlier condition.
 
-use super::{Lanes, Turn, Vector, row};
+use super::{OfLegs, Turn, Vector, row};
 use crate::{Error, guard};
 
 /// The first leg of a turn that fails, and how.
@@ -53,11 +53,11 @@ impl Failed {
 #[inline(always)]
 pub fn reach<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
-    radicand: impl Into<Lanes<V>>,
+    radicand: impl OfLegs<V>,
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
 ) {
-    let radicands = radicand.into().0;
+    let radicands = radicand.of_legs(at.1);
     if !radicands.every(|radicand| radicand >= 0.0) {
         failed.note(legs, at, &|lane, leg| {
             guard::reach(radicands.lane(lane), leg)
@@ -70,12 +70,12 @@ pub fn reach<V: Vector, const LEGS: usize>(
 #[inline(always)]
 pub fn leg<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
-    determinant: impl Into<Lanes<V>>,
+    determinant: impl OfLegs<V>,
     home: &[f64; LEGS],
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
 ) {
-    let (determinants, homes) = (determinant.into().0, row(home, at).0);
+    let (determinants, homes) = (determinant.of_legs(at.1), row(home, at).0);
     let mut lane = 0..;
     let is_regular = |determinant: f64| {
         let home = homes.lane(lane.next().unwrap_or_default());
@@ -93,12 +93,12 @@ pub fn leg<V: Vector, const LEGS: usize>(
 #[inline(always)]
 pub fn closed<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
-    gap: impl Into<Lanes<V>>,
+    gap: impl OfLegs<V>,
     within: f64,
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
 ) {
-    let gaps = gap.into().0;
+    let gaps = gap.of_legs(at.1);
     if !gaps.every(|gap| gap.abs() <= within) {
         failed.note(legs, at, &|lane, leg| {
             guard::closed(gaps.lane(lane), within, leg)

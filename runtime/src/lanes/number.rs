@@ -1,6 +1,6 @@
 //! Functions of lanes; each is that of [`math`] in every lane.
 
-use super::{Lanes, Turn, Vector};
+use super::{Lanes, OfLegs, Turn, Vector};
 use crate::math;
 
 /// Square root.
@@ -21,23 +21,23 @@ pub fn sign<V: Vector>(velocity: Lanes<V>) -> Lanes<V> {
 #[inline(always)]
 #[must_use]
 pub fn signed<V: Vector, const LEGS: usize>(
-    value: impl Into<Lanes<V>>,
-    velocity: impl Into<Lanes<V>>,
-    _: Turn<V, LEGS>,
+    value: impl OfLegs<V>,
+    velocity: impl OfLegs<V>,
+    at: Turn<V, LEGS>,
 ) -> Lanes<V> {
-    value.into() * sign(velocity.into())
+    Lanes(value.of_legs(at.1) * velocity.of_legs(at.1).sign())
 }
 
 /// The angle of the direction (x, y), of the legs of a turn.
 #[inline(always)]
 #[must_use]
 pub fn atan2<V: Vector, const LEGS: usize>(
-    y: impl Into<Lanes<V>>,
-    x: impl Into<Lanes<V>>,
-    _: Turn<V, LEGS>,
+    y: impl OfLegs<V>,
+    x: impl OfLegs<V>,
+    at: Turn<V, LEGS>,
 ) -> Lanes<V> {
-    let (y, x) = (y.into().0, x.into().0);
-    Lanes(V::of(|lane| math::atan2(y.lane(lane), x.lane(lane))))
+    let (y, x) = (y.of_legs(at.1), x.of_legs(at.1));
+    Lanes(V::of(at.1, |lane| math::atan2(y.lane(lane), x.lane(lane))))
 }
 
 /// Sine and cosine of an angle.

@@ -17,7 +17,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: f64) -> Self {
-                self.$name(Self::all(other))
+                self.$name(Self::all(self.0.proof(), other))
             }
         }
 
@@ -25,7 +25,7 @@ macro_rules! operator {
             type Output = Lanes<V>;
             #[inline(always)]
             fn $name(self, other: Lanes<V>) -> Lanes<V> {
-                Lanes::all(self).$name(other)
+                Lanes::all(other.0.proof(), self).$name(other)
             }
         }
     };

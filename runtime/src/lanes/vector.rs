@@ -12,17 +12,23 @@ pub trait Vector:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// What shows that the processor has such vectors; nothing where the build is for such processors alone.
+    type Proof: Copy;
+
     /// How many they are.
     const WIDTH: usize;
 
+    /// What shows that there is such a vector.
+    fn proof(self) -> Self::Proof;
+
     /// The same number in every lane.
-    fn all(number: f64) -> Self;
+    fn all(proof: Self::Proof, number: f64) -> Self;
 
     /// The number of each lane.
-    fn of(number: impl FnMut(usize) -> f64) -> Self;
+    fn of(proof: Self::Proof, number: impl FnMut(usize) -> f64) -> Self;
 
     /// The first numbers of some, if there are enough.
-    fn first_of(numbers: &[f64]) -> Option<Self>;
+    fn first_of(proof: Self::Proof, numbers: &[f64]) -> Option<Self>;
 
     /// Puts all numbers in front of some, if there is room for them.
     fn put(self, numbers: &mut [f64]);
@@ -47,20 +53,24 @@ pub trait Vector:
 
 /// One number, in builds without vectors and in those that are not optimised.
 impl Vector for f64 {
+    type Proof = ();
     const WIDTH: usize = 1;
 
     #[inline(always)]
-    fn all(number: f64) -> Self {
+    fn proof(self) {}
+
+    #[inline(always)]
+    fn all((): (), number: f64) -> Self {
         number
     }
 
     #[inline(always)]
-    fn of(mut number: impl FnMut(usize) -> f64) -> Self {
+    fn of((): (), mut number: impl FnMut(usize) -> f64) -> Self {
         number(0)
     }
 
     #[inline(always)]
-    fn first_of(numbers: &[f64]) -> Option<Self> {
+    fn first_of((): (), numbers: &[f64]) -> Option<Self> {
         numbers.first().copied()
     }
 
@@ -101,20 +111,24 @@ impl Vector for f64 {
 macro_rules! vector {
     ($vector:ident, $width:literal) => {
         impl Vector for wide::$vector {
+            type Proof = ();
             const WIDTH: usize = $width;
 
             #[inline(always)]
-            fn all(number: f64) -> Self {
+            fn proof(self) {}
+
+            #[inline(always)]
+            fn all((): (), number: f64) -> Self {
                 Self::splat(number)
             }
 
             #[inline(always)]
-            fn of(number: impl FnMut(usize) -> f64) -> Self {
+            fn of((): (), number: impl FnMut(usize) -> f64) -> Self {
                 Self::new(core::array::from_fn(number))
             }
 
             #[inline(always)]
-            fn first_of(numbers: &[f64]) -> Option<Self> {
+            fn first_of((): (), numbers: &[f64]) -> Option<Self> {
                 numbers.first_chunk::<$width>().map(|all| Self::new(*all))
             }
 

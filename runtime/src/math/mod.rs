@@ -2,12 +2,15 @@
 //! the feature `std`, those of `libm` with the feature of that name alone. The angles of a whole function have their sines and
 //! cosines from [`sin_cos_all`].
 
+#[cfg(any(dispatch, all(test, feature = "dispatch", target_arch = "x86_64")))]
+mod detected;
 #[cfg(any(test, not(vectors)))]
 mod plain;
 pub mod single;
 mod trigonometry;
 #[cfg(any(test, vectors))]
 mod vectors;
+pub mod wide;
 
 pub use trigonometry::sin_cos_all;
 

@@ -14,14 +14,7 @@ use overact_core::trigonometry::LARGEST;
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
-    // One comparison for all: `&` rather than `&&`, for there is nothing to gain from an early end.
-    let mut small = true;
-    let mut at = 0;
-    while at < N {
-        small &= angles[at].abs() <= LARGEST;
-        at += 1;
-    }
-    if N < 2 || !small {
+    if N < 2 || !are_small(&angles) {
         return one_by_one(angles);
     }
     #[cfg(vectors)]
@@ -32,6 +25,19 @@ pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
     {
         super::plain::sin_cos_all(&angles)
     }
+}
+
+/// Whether all angles are small enough to be reduced.
+#[inline(always)]
+pub(super) fn are_small<const N: usize>(angles: &[f64; N]) -> bool {
+    // One comparison for all: `&` rather than `&&`, for there is nothing to gain from an early end.
+    let mut small = true;
+    let mut at = 0;
+    while at < N {
+        small &= angles[at].abs() <= LARGEST;
+        at += 1;
+    }
+    small
 }
 
 /// Sines and cosines by the library, out of the way of what is usual.
@@ -64,6 +70,13 @@ mod tests {
                 };
                 let angles: [f64; 7] = core::array::from_fn(|i| angle(i as u32));
                 assert_eq!(plain::sin_cos_all(&angles), vectors::sin_cos_all(&angles));
+                #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+                if let Some(found) = super::super::detected::sin_cos_all(&angles) {
+                    for (&x, (sine, cosine)) in angles.iter().zip(found) {
+                        let (s, c) = libm::sincos(x);
+                        worst = worst.max(ulps(sine, s)).max(ulps(cosine, c));
+                    }
+                }
                 for (&x, (sine, cosine)) in angles.iter().zip(sin_cos_all(angles)) {
                     let (s, c) = libm::sincos(x);
                     worst = worst.max(ulps(sine, s)).max(ulps(cosine, c));

@@ -4,6 +4,7 @@
 
 mod split;
 mod sums;
+mod work;
 
 use super::expression::{self, ident, number};
 use super::layout::Sections;
@@ -15,6 +16,7 @@ use crate::writing::labels::Labels;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use split::Split;
+pub(super) use work::Work;
 
 /// A function's body, and what its item tells of it.
 pub(super) struct Loop {
@@ -32,8 +34,8 @@ pub(super) struct Loop {
 const FEW: usize = 4;
 
 /// Names that the loop has for itself.
-const RESERVED: [&str; 8] = [
-    "at", "added", "failed", "own", "rows", "sums", "solution", "output",
+const RESERVED: [&str; 9] = [
+    "at", "added", "failed", "lanes", "own", "rows", "sums", "solution", "output",
 ];
 
 /// The body of a function in lanes.
@@ -132,12 +134,8 @@ fn headings(
 
 /// The turns in which the legs are gone through.
 fn places(lanes: &Lanes) -> TokenStream {
-    let legs = lanes.legs.len();
-    let count = unsuffixed(legs);
-    match legs <= FEW {
-        true => quote!(::overact::lanes::places_of_few::<#count>()),
-        false => quote!(::overact::lanes::places::<#count>()),
-    }
+    let count = unsuffixed(lanes.legs.len());
+    quote!(::overact::lanes::places::<V, #count>(lanes))
 }
 
 /// What stands around the statements of the legs.

@@ -29,7 +29,7 @@ impl<'a> Split<'a> {
     pub(super) fn new(lanes: &'a Lanes) -> Self {
         Self {
             lanes,
-            shared_writer: Writer::new(&lanes.program.inputs, Float::F64),
+            shared_writer: Writer::wide(&lanes.program.inputs, Float::F64),
             own_writer: Writer::of_lanes(&lanes.program.inputs),
             own_names: HashSet::new(),
             shared: Vec::new(),

@@ -5,7 +5,7 @@
 
 use super::split::{Split, is_zero};
 use super::{Parts, places, rows as rows_of, unsuffixed};
-use crate::emission::expression;
+use crate::emission::expression::{self, Writer};
 use crate::float::Float;
 use crate::lowering::{LegRows, Sums};
 use crate::model::RobotModel;
@@ -126,7 +126,7 @@ fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream 
         LegRows::Times(_) => &program.output,
         _ => &split.lanes.output,
     };
-    let written = expression::write(&body, &program.inputs, output, Float::F64);
+    let written = expression::write(&Writer::new(&program.inputs, Float::F64), &body, output);
     let (statements, value) = (written.statements, written.value);
     match statements.is_empty() {
         true => value,

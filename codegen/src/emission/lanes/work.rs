@@ -1,0 +1,76 @@
+//! A function in lanes as work that runs in vectors chosen when it is called: a type that has its arrays, and runs in
+//! any vectors.
+
+use super::{FEW, Loop};
+use crate::emission::expression::ident;
+use crate::emission::function::array_type;
+use crate::float::Float;
+use crate::lowering::{Elements, Lanes};
+use crate::model::CompiledFunction;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The function as a type, and its value.
+pub(in crate::emission) struct Work {
+    /// The type and what it does.
+    pub(in crate::emission) item: TokenStream,
+    /// The value of the type, run.
+    pub(in crate::emission) value: TokenStream,
+}
+
+impl Work {
+    /// Of a function that is written.
+    pub(in crate::emission) fn new(
+        function: &CompiledFunction,
+        lanes: &Lanes,
+        written: &Loop,
+    ) -> Self {
+        let program = &function.program;
+        let arrays = program
+            .inputs
+            .iter()
+            .filter(|array| is_used(lanes, &array.name));
+        let (names, kinds): (Vec<_>, Vec<_>) = arrays
+            .map(|array| (ident(&array.name), array_type(array, Float::F64)))
+            .unzip();
+        let output = array_type(&program.output, Float::F64);
+        let (statements, value) = (&written.statements, &written.value);
+        let item = quote! {
+            #[doc = " The function with its legs side by side, in vectors that are chosen when it runs."]
+            #[derive(::core::clone::Clone, ::core::marker::Copy)]
+            struct Legs<'a> { #(#names: &'a #kinds),* }
+            impl ::overact::lanes::SideBySide for Legs<'_> {
+                type Output = ::core::result::Result<#output, ::overact::Error>;
+                #[inline(always)]
+                fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+                    let Self { #(#names),* } = self;
+                    #statements
+                    ::core::result::Result::Ok(#value)
+                }
+            }
+        };
+        let work = quote!(Legs { #(#names),* });
+        let run = match lanes.legs.len() <= FEW {
+            true => quote!(::overact::lanes::few),
+            false => quote!(::overact::lanes::many),
+        };
+        Self {
+            item,
+            value: quote!(#run(#work)),
+        }
+    }
+}
+
+/// Whether an array of the function, shared by all legs or with elements of each, is used in the lanes.
+fn is_used(lanes: &Lanes, name: &str) -> bool {
+    let inputs = &lanes.program.inputs;
+    let used = lanes.program.used_inputs();
+    let mut each = lanes.inputs.iter().zip(inputs).zip(used);
+    each.any(|((elements, input), is_used)| {
+        let of = match elements {
+            Elements::Scattered { of, .. } => &inputs[*of].name,
+            _ => &input.name,
+        };
+        is_used && of == name
+    })
+}

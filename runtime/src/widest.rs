@@ -1,0 +1,16 @@
+//! Straight functions compiled once more for the vectors of newer processors, and run so where there are some.
+//!
+//! A build for any processor of the x86-64 has registers of two numbers, and instructions that overwrite one of their
+//! operands. Those of AVX2 have four, and a place of their own for the result. Products and sums stay apart, so that but
+//! for sines and cosines the numbers are those of any other processor, to the last bit.
+
+/// Runs a function, whose closure is to be inlined, with the instructions of the processor at hand: in optimised builds
+/// with the feature `dispatch`. In others it is just called.
+#[inline(always)]
+pub fn widest<R>(function: impl FnOnce() -> R) -> R {
+    #[cfg(dispatch)]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return simd.vectorize(function);
+    }
+    function()
+}
