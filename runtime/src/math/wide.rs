@@ -8,10 +8,11 @@ pub use super::{atan2, sign, signed, sin_cos, sqrt};
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
     #[cfg(dispatch)]
-    if N > 1 && super::trigonometry::are_small(&angles) {
-        if let Some(pairs) = super::detected::sin_cos_all(&angles) {
-            return pairs;
-        }
+    if N > 1
+        && super::trigonometry::are_small(&angles)
+        && let Some(pairs) = super::detected::sin_cos_all(&angles)
+    {
+        return pairs;
     }
     super::sin_cos_all(angles)
 }
