@@ -2,7 +2,7 @@
 //! that fail the same one is told.
 //!
 //! Vectors are taken in optimised builds only, so a program of its own is built with optimisation: for the processor's
-//! smallest vectors, for those that it finds out when it runs, and for those of AVX-512 alone. Only the full tier does
+//! smallest vectors, for those that it finds out when it runs, and for those of AVX2 and of AVX-512 alone. Only the full tier does
 //! this: it takes a minute.
 
 use overact_codegen::{Effort, Request, compile_with, emission};
@@ -64,6 +64,9 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     }
     run(&folder, "", &[])?;
     run(&folder, "", &["--features", "dispatch"])?;
+    if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
+        run(&folder, "-Ctarget-feature=+avx2", &[])?;
+    }
     // All of AVX-512 that such processors have in common: `wide` does not compile with a part of it.
     if has_v4() {
         run(&folder, "-Ctarget-cpu=x86-64-v4", &[])?;

@@ -1,7 +1,7 @@
 //! Sines and cosines of several angles at once in vectors of AVX2, in a build for any x86-64.
 //!
-//! The method and its numbers are those of [`overact_core::trigonometry`], with fused multiplication and addition: all that
-//! follows waits for sines, and steps with one rounding take half of the time.
+//! The method and its numbers are those of [`overact_core::trigonometry`], with fused multiplication and addition: what
+//! follows waits for sines, and has them sooner.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 use pulp::x86::V3;

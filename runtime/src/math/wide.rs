@@ -1,5 +1,5 @@
 //! The functions of [`math`](super) for functions that are compiled for wider vectors, too: sines and cosines take these
-//! where the processor has them. In a short function that asks which there are takes longer than it saves.
+//! where the processor has them. A short function would lose more by asking for them than it gains.
 
 pub use super::{atan2, sign, signed, sin_cos, sqrt};
 
