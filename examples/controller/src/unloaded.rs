@@ -253,304 +253,327 @@ impl DualV {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
-        /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        /// 2 l_ab²
-        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        // --- leg1
-        let p_x_leg3 = R_P * s_phi;
-        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
-        let p_y_leg1 = R_P * c_phi;
-        let t1_leg3 = p_y_leg1 - 0.10970563941232059;
-        let d_y_leg1 = pose[1] + t1_leg3;
-        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
-        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        let k1_leg1 = 1.0 / det_leg1;
-        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-            + minus_g2_vy_leg1 * v_end_y_leg1;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
-        let rate_dot_1_leg1 = k1_leg1
-            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
-        let tau_1_leg1 = 0.029999722179847328 * rate_1_leg1
-            + ::overact::math::signed(0.11985569222332705, rate_1_leg1)
-            + 0.004159752894756029;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let tau_2_leg1 = 0.008535456014915175
-            - (0.00000006752479729920554 * minus_qd_2_leg1
-                + ::overact::math::signed(0.00991462620751174, minus_qd_2_leg1));
-        let force_on_u1_leg1 = 0.04453048911420754 * rate_dot_1_leg1
-            + 0.000005168711019354161 * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
-        let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_moment2_z_leg1 = 0.00002248639870435637 * minus_rate_dot_2_leg1
-            + 0.000005168711019354161 * minus_a_on_f1_leg1;
-        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        let tau_3_leg1 = 0.000000021460460841392392 * qd_3_leg1
-            + ::overact::math::signed(0.009884749794732988, qd_3_leg1)
-            + 0.006299792724776336;
-        let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
-        // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
-        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-            + minus_g1_vy_leg2 * v_end_y_leg1;
-        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg2;
-        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
-        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-        let rate_dot_2_leg2 = (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2) / det_leg2;
-        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_2_squared_leg2;
-        let moment2_z_leg2 = 0.00002058962223353694 * rate_dot_2_leg2
-            - 0.00000335124576642444 * minus_a_on_f1_leg2;
-        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        let tau_2_leg2 = 0.00000006157814333318819 * qd_2_leg2
-            + ::overact::math::signed(0.009944457993507957, qd_2_leg2)
-            + 0.0006559381634039045;
-        let qd_3_leg2 = twist[2] - rate_2_leg2;
-        let tau_3_leg2 = 0.00000001810735080471036 * qd_3_leg2
-            + ::overact::math::signed(0.01038045756726188, qd_3_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_rate_dot_1_leg2 = (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2)
-            / det_leg2;
-        let minus_tau_1_leg2 = 0.019974974613703813 * minus_rate_1_leg2
-            + ::overact::math::signed(0.10056998680223246, minus_rate_1_leg2)
-            + 0.004134893087019274;
-        let force_on_u1_leg2 = 0.00000335124576642444 * a_on_f2_leg2
-            - 0.04811478221073617 * minus_rate_dot_1_leg2 - minus_tau_1_leg2
-            - tau_2_leg2;
-        // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - t1_leg3;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-            + minus_g2_vy_leg3 * v_end_y_leg3;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
-        let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let tau_1_leg3 = 0.039649798337018656 * rate_1_leg3
-            + ::overact::math::signed(0.15060236311801395, rate_1_leg3)
-            + 0.0009640134986800234;
-        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        let tau_2_leg3 = 0.002029804994654387
-            - (0.00000009637346970834657 * minus_qd_2_leg3
-                + ::overact::math::signed(0.0102077543876856, minus_qd_2_leg3));
-        let force_on_u1_leg3 = 0.04805383494499909 * rate_dot_1_leg3
-            + 0.00008112715886872903 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
-        let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let moment2_z_leg3 = 0.00005075363513735304 * minus_rate_dot_2_leg3
-            - 0.00008112715886872903 * minus_a_on_f1_leg3;
-        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        let tau_3_leg3 = 0.000000017313663972054018 * qd_3_leg3
-            + ::overact::math::signed(0.009789945271952191, qd_3_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
-            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
-            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
-        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-            + minus_g1_vy_leg4 * v_end_y_leg3;
-        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
-        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
-        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        let tau_2_leg4 = 0.0000000955728788284811 * qd_2_leg4
-            + ::overact::math::signed(0.01008072800356214, qd_2_leg4)
-            + 0.003040155469275262;
-        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
-        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4)
-            / det_leg4;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
-        let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
-            + ::overact::math::signed(0.10986887003468548, minus_rate_1_leg4)
-            + 0.001454029351535881;
-        let minus_force_on_u1_leg4 = tau_2_leg4
-            + 0.050666830508230606 * minus_rate_dot_1_leg4
-            + 0.000013210750116729909 * a_on_f2_leg4 + minus_tau_1_leg4;
-        let rate_dot_2_leg4 = (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4) / det_leg4;
-        let moment2_z_leg4 = 0.000013210750116729909 * minus_a_on_f1_leg4
-            - 0.000029825765005556115 * rate_dot_2_leg4;
-        let qd_3_leg4 = twist[2] - rate_2_leg4;
-        let tau_3_leg4 = 0.000000017719161312588675 * qd_3_leg4
-            + ::overact::math::signed(0.009981515921207268, qd_3_leg4);
-        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let force_x_platform = 1.920521204934164 * acceleration[0]
-            - (0.00012218958751573095 * a_arm_y_leg3
-                + 0.001632896850187524 * a_arm_x_leg1);
-        let t1_platform = t3_leg3 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
-            + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
-        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 / s_1_1;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = 1.920521204934164 * acceleration[1]
-            + 0.001632896850187524 * a_arm_y_leg3
-            - 0.00012218958751573095 * a_arm_x_leg1;
-        let t1 = t4_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
-            + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t1_platform * l_2_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 / s_1_1;
-        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 / pivot_2;
-        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
-            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
-            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
-            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
-            + tau_3_leg3;
-        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let moment_z_platform = acceleration[1]
-            * (0.000013440854626730402 * c_phi + 0.0001796186535206276 * s_phi)
-            - acceleration[0]
-                * (0.000013440854626730402 * s_phi - 0.0001796186535206276 * c_phi)
-            + 0.020607684175340465 * acceleration[2];
-        let t2 = t5_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
-            + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
-            - t1_platform * l_3_1 - l_3_2 * t1;
-        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t3 = t2 / pivot_3;
-        let t4 = t1 / pivot_2 - l_3_2 * t3;
-        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
-        ::core::result::Result::Ok([
-            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
-            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
-            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
-            -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// l_ab²
+            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            /// r_p
+            const R_P: ::core::primitive::f64 = 0.11;
+            /// 2 l_ab²
+            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            // --- leg1
+            let p_x_leg3 = R_P * s_phi;
+            let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+            let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+            let p_y_leg1 = R_P * c_phi;
+            let t1_leg3 = p_y_leg1 - 0.10970563941232059;
+            let d_y_leg1 = pose[1] + t1_leg3;
+            let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            let k1_leg1 = 1.0 / det_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+            let rate_dot_1_leg1 = k1_leg1
+                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
+            let tau_1_leg1 = 0.029999722179847328 * rate_1_leg1
+                + ::overact::math::wide::signed(0.11985569222332705, rate_1_leg1)
+                + 0.004159752894756029;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let tau_2_leg1 = 0.008535456014915175
+                - (0.00000006752479729920554 * minus_qd_2_leg1
+                    + ::overact::math::wide::signed(
+                        0.00991462620751174,
+                        minus_qd_2_leg1,
+                    ));
+            let force_on_u1_leg1 = 0.04453048911420754 * rate_dot_1_leg1
+                + 0.000005168711019354161 * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_moment2_z_leg1 = 0.00002248639870435637 * minus_rate_dot_2_leg1
+                + 0.000005168711019354161 * minus_a_on_f1_leg1;
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let tau_3_leg1 = 0.000000021460460841392392 * qd_3_leg1
+                + ::overact::math::wide::signed(0.009884749794732988, qd_3_leg1)
+                + 0.006299792724776336;
+            let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
+            // --- leg2
+            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg2;
+            let g2_vy_leg2 = l1_y_leg2 / det_leg2;
+            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+            let rate_dot_2_leg2 = (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2)
+                / det_leg2;
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
+            let moment2_z_leg2 = 0.00002058962223353694 * rate_dot_2_leg2
+                - 0.00000335124576642444 * minus_a_on_f1_leg2;
+            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+            let tau_2_leg2 = 0.00000006157814333318819 * qd_2_leg2
+                + ::overact::math::wide::signed(0.009944457993507957, qd_2_leg2)
+                + 0.0006559381634039045;
+            let qd_3_leg2 = twist[2] - rate_2_leg2;
+            let tau_3_leg2 = 0.00000001810735080471036 * qd_3_leg2
+                + ::overact::math::wide::signed(0.01038045756726188, qd_3_leg2);
+            let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+            let minus_rate_dot_1_leg2 = (minus_a_on_f1_leg2
+                + rate_1_squared_leg2 * t1_leg2) / det_leg2;
+            let minus_tau_1_leg2 = 0.019974974613703813 * minus_rate_1_leg2
+                + ::overact::math::wide::signed(
+                    0.10056998680223246,
+                    minus_rate_1_leg2,
+                ) + 0.004134893087019274;
+            let force_on_u1_leg2 = 0.00000335124576642444 * a_on_f2_leg2
+                - 0.04811478221073617 * minus_rate_dot_1_leg2 - minus_tau_1_leg2
+                - tau_2_leg2;
+            // --- leg3
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_leg3 = pose[1] - t1_leg3;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            let k1_leg3 = 1.0 / det_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+                + minus_g2_vy_leg3 * v_end_y_leg3;
+            let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
+                + l2_y_leg3 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+            let rate_dot_1_leg3 = k1_leg3
+                * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg3;
+            let tau_1_leg3 = 0.039649798337018656 * rate_1_leg3
+                + ::overact::math::wide::signed(0.15060236311801395, rate_1_leg3)
+                + 0.0009640134986800234;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            let tau_2_leg3 = 0.002029804994654387
+                - (0.00000009637346970834657 * minus_qd_2_leg3
+                    + ::overact::math::wide::signed(
+                        0.0102077543876856,
+                        minus_qd_2_leg3,
+                    ));
+            let force_on_u1_leg3 = 0.04805383494499909 * rate_dot_1_leg3
+                + 0.00008112715886872903 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+            let moment2_z_leg3 = 0.00005075363513735304 * minus_rate_dot_2_leg3
+                - 0.00008112715886872903 * minus_a_on_f1_leg3;
+            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            let tau_3_leg3 = 0.000000017313663972054018 * qd_3_leg3
+                + ::overact::math::wide::signed(0.009789945271952191, qd_3_leg3);
+            let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+            let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1
+                - minus_g2_vx_leg1 * force_on_u2_leg1 + g2_vx_leg2 * force_on_u2_leg2
+                - minus_g1_vx_leg2 * force_on_u1_leg2 + g1_vx_leg3 * force_on_u1_leg3
+                - minus_g2_vx_leg3 * force_on_u2_leg3;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
+            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+                + minus_g1_vy_leg4 * v_end_y_leg3;
+            let g2_vx_leg4 = l1_x_leg4 / det_leg4;
+            let g2_vy_leg4 = l1_y_leg4 / det_leg4;
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            let tau_2_leg4 = 0.0000000955728788284811 * qd_2_leg4
+                + ::overact::math::wide::signed(0.01008072800356214, qd_2_leg4)
+                + 0.003040155469275262;
+            let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg4;
+            let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+            let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4
+                + rate_1_squared_leg4 * t1_leg4) / det_leg4;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
+                + ::overact::math::wide::signed(
+                    0.10986887003468548,
+                    minus_rate_1_leg4,
+                ) + 0.001454029351535881;
+            let minus_force_on_u1_leg4 = tau_2_leg4
+                + 0.050666830508230606 * minus_rate_dot_1_leg4
+                + 0.000013210750116729909 * a_on_f2_leg4 + minus_tau_1_leg4;
+            let rate_dot_2_leg4 = (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4)
+                / det_leg4;
+            let moment2_z_leg4 = 0.000013210750116729909 * minus_a_on_f1_leg4
+                - 0.000029825765005556115 * rate_dot_2_leg4;
+            let qd_3_leg4 = twist[2] - rate_2_leg4;
+            let tau_3_leg4 = 0.000000017719161312588675 * qd_3_leg4
+                + ::overact::math::wide::signed(0.009981515921207268, qd_3_leg4);
+            let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+            let force_x_platform = 1.920521204934164 * acceleration[0]
+                - (0.00012218958751573095 * a_arm_y_leg3
+                    + 0.001632896850187524 * a_arm_x_leg1);
+            let t1_platform = t3_leg3 + minus_g1_vx_leg4 * minus_force_on_u1_leg4
+                + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
+            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+            ::overact::guard::platform(
+                s_1_1,
+                25.429161076750646,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+            let l_2_1 = s_1_2 / s_1_1;
+            let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
+                - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+                - minus_g1_vy_leg2 * force_on_u1_leg2 + g1_vy_leg3 * force_on_u1_leg3
+                - minus_g2_vy_leg3 * force_on_u2_leg3;
+            let force_y_platform = 1.920521204934164 * acceleration[1]
+                + 0.001632896850187524 * a_arm_y_leg3
+                - 0.00012218958751573095 * a_arm_x_leg1;
+            let t1 = t4_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
+                + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
+                - t1_platform * l_2_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                25.592368899353342,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 / s_1_1;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+            let l_3_2 = schur_2_3 / pivot_2;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1
+                - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
+                + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
+                + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
+                - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let moment_z_platform = acceleration[1]
+                * (0.000013440854626730402 * c_phi + 0.0001796186535206276 * s_phi)
+                - acceleration[0]
+                    * (0.000013440854626730402 * s_phi
+                        - 0.0001796186535206276 * c_phi)
+                + 0.020607684175340465 * acceleration[2];
+            let t2 = t5_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
+                + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
+                - t1_platform * l_3_1 - l_3_2 * t1;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t3 = t2 / pivot_3;
+            let t4 = t1 / pivot_2 - l_3_2 * t3;
+            let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
+            ::core::result::Result::Ok([
+                g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+                g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
+                g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+                -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4
+                    + minus_g1_wz_leg4 * t3),
+            ])
+        })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
@@ -569,133 +592,139 @@ impl DualV {
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
-        /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
-        /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        // --- leg1
-        let p_x_leg3 = R_P * s_phi;
-        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
-        let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
-        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
-        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        let k1_leg1 = 1.0 / det_leg1;
-        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
-            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - l_2_1 * t1;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
-        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let t3 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
-            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - l_3_1 * t1
-            - l_3_2 * t2;
-        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t4 = t3 / pivot_3;
-        let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-        ::core::result::Result::Ok([
-            g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
-            g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
-            g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
-            -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5 + minus_g1_wz_leg4 * t4),
-        ])
+        ::overact::widest(#[inline(always)] || {
+            /// l_ab²
+            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            /// r_p
+            const R_P: ::core::primitive::f64 = 0.11;
+            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            // --- leg1
+            let p_x_leg3 = R_P * s_phi;
+            let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+            let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+            let p_y_leg1 = R_P * c_phi;
+            let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+            let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            let k1_leg1 = 1.0 / det_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            // --- leg2
+            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            let k1_leg3 = 1.0 / det_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            let k1_leg4 = 1.0 / det_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+            ::overact::guard::platform(
+                s_1_1,
+                25.429161076750646,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+                + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+            let l_2_1 = s_1_2 * inv_pivot_1;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                25.592368899353342,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+                + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
+                - l_2_1 * t1;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 * inv_pivot_1;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+            let l_3_2 = schur_2_3 * inv_pivot_2;
+            let t3 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+                + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
+                - l_3_1 * t1 - l_3_2 * t2;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let t4 = t3 / pivot_3;
+            let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
+            let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
+            ::core::result::Result::Ok([
+                g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
+                g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
+                g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
+                -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
+                    + minus_g1_wz_leg4 * t4),
+            ])
+        })
     }
 }
