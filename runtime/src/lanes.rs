@@ -4,6 +4,7 @@
 //! is needed to be full: what it computes once more is the same. Where there are fewer, the lanes that are left have the
 //! last leg once more. In builds that are not optimised, where vectors are slower than numbers, there is one lane.
 
+mod chosen;
 #[cfg(dispatch)]
 mod detected;
 mod guards;
@@ -12,9 +13,10 @@ mod operators;
 mod side_by_side;
 mod vector;
 
+pub use chosen::{few, four, many};
 pub use guards::{Failed, closed, leg, reach};
 pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
-pub use side_by_side::{SideBySide, few, four, many};
+pub use side_by_side::SideBySide;
 pub use vector::{Few, Many, Vector};
 
 /// A number of each of as many legs as a vector has lanes.

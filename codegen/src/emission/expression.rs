@@ -27,6 +27,23 @@ pub(super) fn write(writer: &Writer<'_>, body: &Body, output: &Array) -> Written
     }
 }
 
+/// `[f64; 3]` or `[[f64; 64]; 3]`.
+#[must_use]
+pub(crate) fn array_type(array: &Array, float: Float) -> TokenStream {
+    let kind = kind(float);
+    let length = |n: usize| Literal::usize_unsuffixed(n);
+    match array.shape[..] {
+        [rows, columns] => {
+            let (rows, columns) = (length(rows), length(columns));
+            quote!([[#kind; #columns]; #rows])
+        }
+        _ => {
+            let len = length(array.len());
+            quote!([#kind; #len])
+        }
+    }
+}
+
 /// The named constants of a body.
 pub(super) fn constants(body: &Body, float: Float) -> TokenStream {
     let kind = kind(float);

@@ -1,18 +1,17 @@
 //! One generated function: documentation, signature, body.
 
 use super::boundary::boundary;
-use super::expression::{self, Writer};
+use super::expression::{self, Writer, array_type};
 use super::lanes::{self, Work};
 use super::layout::Sections;
-use crate::float::Float;
-use crate::lowering::{Array, Pays};
+use crate::lowering::Pays;
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
 use crate::writing::operations;
 use crate::writing::outline::{Outline, Table};
 use overact_core::Function;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// A function as an item of an `impl` block.
@@ -168,23 +167,6 @@ fn call(function: &CompiledFunction) -> TokenStream {
     let inputs = function.program.inputs.iter();
     let inputs = inputs.map(|array| format_ident!("{}", array.name));
     quote!(Self::#name(#(#inputs),*))
-}
-
-/// `[f64; 3]` or `[[f64; 64]; 3]`.
-#[must_use]
-pub(crate) fn array_type(array: &Array, float: Float) -> TokenStream {
-    let kind = expression::kind(float);
-    let length = |n: usize| Literal::usize_unsuffixed(n);
-    match array.shape[..] {
-        [rows, columns] => {
-            let (rows, columns) = (length(rows), length(columns));
-            quote!([[#kind; #columns]; #rows])
-        }
-        _ => {
-            let len = length(array.len());
-            quote!([#kind; #len])
-        }
-    }
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.

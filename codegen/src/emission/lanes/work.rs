@@ -2,8 +2,7 @@
 //! any vectors.
 
 use super::{FEW, Loop};
-use crate::emission::expression::ident;
-use crate::emission::function::array_type;
+use crate::emission::expression::{array_type, ident};
 use crate::float::Float;
 use crate::lowering::{Elements, Lanes};
 use crate::model::CompiledFunction;
