@@ -14,7 +14,7 @@ const OFFSET: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
 /// those of all parameters together cover, too.
 #[test]
 fn intervals_cover_under_white_noise() {
-    cover(Colour::White, by_tier([(0.5, 3.0), (0.88, 1.25)]));
+    cover(Colour::White, by_tier([3.0, 1.25]));
 }
 
 /// Noise that is correlated over some ten of three hundred samples. So few that are independent make errors in
@@ -22,7 +22,7 @@ fn intervals_cover_under_white_noise() {
 #[test]
 fn intervals_cover_under_correlated_noise() {
     if is_full() {
-        cover(Colour::Remembered(0.9), (0.88, 1.4));
+        cover(Colour::Remembered(0.9), 1.4);
     }
 }
 
@@ -30,14 +30,21 @@ fn intervals_cover_under_correlated_noise() {
 #[test]
 fn intervals_cover_under_band_limited_noise() {
     if is_full() {
-        cover(Colour::BandLimited(0.2), (0.88, 1.25));
+        cover(Colour::BandLimited(0.2), 1.25);
     }
 }
 
-/// Draws of noise of a colour; the intervals cover at least so often, and errors in units of the deviations
+/// What the intervals say, and by how many deviations of the number of those that cover it may be missed: 88 % of a
+/// hundred draws.
+const NOMINAL: f64 = 0.95;
+const DEVIATIONS: f64 = 3.2;
+
+/// Draws of noise of a colour; the intervals cover as often as so many draws tell, and errors in units of the deviations
 /// have at most so large a root mean square.
-fn cover(colour: Colour, (least, largest): (f64, f64)) {
+fn cover(colour: Colour, largest: f64) {
     let draws = drawn([2, 40]);
+    let deviation = (NOMINAL * (1.0 - NOMINAL) / draws as f64).sqrt();
+    let least = by_tier([0.5, NOMINAL - DEVIATIONS * deviation]);
     let described = robot(&text("dualv.toml"));
     let real = faulty(&described, &[LINK]);
     for scope in [CalibrationScope::Smallest, CalibrationScope::All] {
