@@ -221,7 +221,7 @@ def measured(only, core, rounds):
         print(f"{ROBOTS[robot]} …", file=sys.stderr, flush=True)
         found = list(cells(robot))
         functions = [cell.function for cell in found]
-        builds = (timing.DISPATCHED, timing.NATIVE, timing.PLAIN)
+        builds = (timing.ANY, timing.THIS, timing.ANY_PLAIN)
         own = zip(*(timing.rust_programs(functions, build=build) for build in builds), strict=True)
         for cell, programs in zip(found, own, strict=True):
             print(f"{ROBOTS[robot]}, {cell.title}: times …", file=sys.stderr, flush=True)

@@ -87,7 +87,7 @@ def c_program(title, name, source, inputs, outputs, build=NATIVE):
 
 #: How overact's functions are built: for any processor of the kind, with vectors that are found when they run or without
 #: these, or for this processor. Each has the features of the runtime and a folder of its own.
-DISPATCHED, PLAIN, NATIVE = ("dispatch", "target"), ("std", "target-plain"), ("std", "target-native")
+ANY, ANY_PLAIN, THIS = ("dispatch", "target"), ("std", "target-plain"), ("std", "target-native")
 
 
 def rust_crate(functions, features):
@@ -106,7 +106,7 @@ def rust_crate(functions, features):
     return folder
 
 
-def rust_programs(functions, template="main.rs", dependencies=(), build=DISPATCHED):
+def rust_programs(functions, template="main.rs", dependencies=(), build=ANY):
     """Compiles a program for each of overact's functions."""
     features, name_of_target = build
     folder = rust_crate(functions, features)
@@ -122,7 +122,7 @@ def rust_programs(functions, template="main.rs", dependencies=(), build=DISPATCH
             manifest.writelines(f'[dependencies.{d}]\npath = "{ROOT / p}"\n' for d, p in dependencies)
     environment = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
     environment["CARGO_TARGET_DIR"] = str(target)
-    if build == NATIVE:
+    if build == THIS:
         environment["RUSTFLAGS"] = "-C target-cpu=native"
     subprocess.run(["cargo", "build", "--quiet", "--release"], cwd=folder, env=environment, check=True)
     return programs
@@ -150,7 +150,7 @@ def rust_main(function, template):
 
 def blocks(function, core=0, rounds=2000):
     """Nanoseconds per sample of overact's function, of its program over blocks, and of the same with rows."""
-    (program,) = rust_programs([function], "blocks.rs", [("overact", "runtime"), ("overact-codegen", "codegen")])
+    (program,) = rust_programs([function], "blocks.rs", [("overact-codegen", "codegen")])
     path = BUILD / "states" / f"{function.robot}_blocks.bin"
     write_states(path, states(function, STATES, seed=2))
     command = ["taskset", "-c", str(core), program.path, path, str(rounds)]
