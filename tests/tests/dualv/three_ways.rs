@@ -19,7 +19,7 @@ redundant_backend!(ByMacro, "macro", DualV);
 redundant_backend!(ByBuildScript, "build script", partitions::kept_123::DualV);
 redundant_backend!(Generated, "generated", overact_compiled::DualV);
 
-/// Tokens as text, without what only the printer of files adds: commas before a closing delimiter,
+/// Tokens as text, without what only the printer of files adds: commas before a closing delimiter or angle bracket,
 /// and braces around the one expression of a match arm.
 fn normalised(tokens: TokenStream) -> String {
     let is = |token: &TokenTree, c: char| matches!(token, TokenTree::Punct(p) if p.as_char() == c);
@@ -27,7 +27,7 @@ fn normalised(tokens: TokenStream) -> String {
     let mut rest = tokens.into_iter().peekable();
     while let Some(token) = rest.next() {
         let is_arm = texts.ends_with(&["=".to_owned(), ">".to_owned()]);
-        let last = rest.peek().is_none();
+        let last = rest.peek().is_none_or(|next| is(next, '>'));
         match &token {
             comma if is(comma, ',') && last => {}
             TokenTree::Group(group) if is_arm && group.delimiter() == Delimiter::Brace => {
