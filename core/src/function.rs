@@ -21,8 +21,8 @@ pub enum Condition {
     NumericJoints,
     /// A free platform whose legs block directions that change with its pose.
     Parasitic,
-    /// Loops and prismatic actuators alone, with joints that follow from the pose by rule.
-    PrismaticActuators,
+    /// Loops, with joints that follow from the pose by rule.
+    JointsByRule,
 }
 
 /// A function of a robot; [`Function::summary`] says what each computes.
@@ -150,11 +150,11 @@ impl Function {
             },
             Self::PoseStep => Entry {
                 name: "pose_step",
-                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21). Where the elimination would lose digits it is refused, though J_p^inv be regular.",
+                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.",
                 inputs: &[Pose, Actuators],
                 rows: Extent::Dof,
                 columns: None,
-                condition: Condition::PrismaticActuators,
+                condition: Condition::JointsByRule,
             },
             Self::InverseJacobian => Entry {
                 name: "inverse_jacobian",

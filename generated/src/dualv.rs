@@ -14,6 +14,7 @@
 /// | `pose_in_closed_form` | 61, 3 √, 4 sc, 1 at, 5 gd |  |
 /// | `joints` | 184, 4 √, 1 sc, 12 at, 8 gd |  |
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
+/// | `pose_step` | 203, 4 √, 5 sc, 4 at, 15 gd |  |
 /// | `inverse_jacobian` | 80, 4 √, 1 sc, 12 gd |  |
 /// | `inverse_jacobian_from_joints` | 30, 9 sc, 4 gd |  |
 /// | `jacobian` | 196, 4 √, 1 sc, 15 gd |  |
@@ -27,28 +28,28 @@
 /// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 15 gd |  |
 /// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 126 |  |
 /// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 107 |  |
 /// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
-/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 10 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 13 gd |  |
 /// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 15 gd; in lanes 61 + 4 x 141 |  |
 /// | `inverse_dynamics_from_joints` | 517, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 15 gd; in lanes 61 + 4 x 121 |  |
 /// | `inverse_dynamics_base_from_joints` | 442, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 83 |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 86 |  |
 /// | `bias` | 461, 4 √, 1 sc, 12 sg, 12 gd; in lanes 13 + 4 x 122 |  |
@@ -673,6 +674,174 @@ impl DualV {
                 -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
         ])
+    }
+    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 203 operations (83 additions, 109 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn pose_step(
+        pose: &[::core::primitive::f64; 3],
+        actuators: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        // --- sines and cosines
+        let [(s_phi, c_phi), (s_actuator_1, c_actuator_1), (s_actuator_2, c_actuator_2),
+        (s_actuator_3, c_actuator_3), (s_actuator_4, c_actuator_4)] = ::overact::math::sin_cos_all([
+            pose[2], actuators[0], actuators[1], actuators[2], actuators[3],
+        ]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let missed_1 = ::overact::math::atan2(
+            l1_x_leg1 * s_actuator_1 - l1_y_leg1 * c_actuator_1,
+            l1_x_leg1 * c_actuator_1 + l1_y_leg1 * s_actuator_1,
+        );
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let missed_2 = ::overact::math::atan2(
+            l1_x_leg2 * s_actuator_2 - l1_y_leg2 * c_actuator_2,
+            l1_x_leg2 * c_actuator_2 + l1_y_leg2 * s_actuator_2,
+        );
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let missed_3 = ::overact::math::atan2(
+            l1_x_leg3 * s_actuator_3 - l1_y_leg3 * c_actuator_3,
+            l1_x_leg3 * c_actuator_3 + l1_y_leg3 * s_actuator_3,
+        );
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let missed_4 = ::overact::math::atan2(
+            l1_x_leg4 * s_actuator_4 - l1_y_leg4 * c_actuator_4,
+            l1_x_leg4 * c_actuator_4 + l1_y_leg4 * s_actuator_4,
+        );
+        let t1 = g1_vx_leg1 * missed_1 - minus_g1_vx_leg2 * missed_2
+            + g1_vx_leg3 * missed_3 - minus_g1_vx_leg4 * missed_4;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t2 = g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
+            + g1_vy_leg3 * missed_3 - minus_g1_vy_leg4 * missed_4 - l_2_1 * t1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t3 = g1_wz_leg2 * missed_2 - minus_g1_wz_leg1 * missed_1
+            + g1_wz_leg3 * missed_3 - minus_g1_wz_leg4 * missed_4 - l_3_1 * t1
+            - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t4 = t3 / pivot_3;
+        let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
+        ::core::result::Result::Ok([inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -3182,7 +3351,7 @@ impl DualV {
     /// Columns: `PARAMETERS`.
     ///
     /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 51 negations, 526 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4838,7 +5007,7 @@ impl DualV {
     /// Columns: `PARAMETERS`.
     ///
     /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 49 negations, 628 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6517,7 +6686,7 @@ impl DualV {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 43 negations, 486 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7976,7 +8145,7 @@ impl DualV {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 40 negations, 607 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8672,7 +8841,7 @@ impl DualV {
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
     /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 23 guards, 5 negations, 390 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10029,7 +10198,7 @@ impl DualV {
     /// Output: 4.
     ///
     /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 748 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11181,7 +11350,7 @@ impl DualV {
     /// Output: 4.
     ///
     /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 665 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -14294,6 +14463,25 @@ impl DualV {
             closed,
             *start,
             |mut pose: [::core::primitive::f64; Self::POSE]| {
+                let mut stepped = pose;
+                let find = |
+                    pose: &[::core::primitive::f64],
+                    step: &mut [::core::primitive::f64]|
+                {
+                    ::overact::block::write(
+                        &Self::pose_step(::overact::block::array(pose)?, actuators)?,
+                        step,
+                    );
+                    ::core::result::Result::Ok(())
+                };
+                if ::overact::forward::steps(
+                    &mut stepped,
+                    &mut [0.0; Self::DOF],
+                    find,
+                    ::overact::forward::displace,
+                ) {
+                    return ::core::result::Result::Ok(stepped);
+                }
                 ::overact::forward::gauss_newton(
                         ::overact::forward::Measured {
                             positions: actuators,
@@ -14371,6 +14559,10 @@ impl ::overact::Model for DualV {
             ::overact::Function::ActuatorPositions => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::actuator_positions(row.row(0)?))
+            }
+            ::overact::Function::PoseStep => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_step(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseJacobian => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

@@ -14,6 +14,7 @@
 /// | `pose_in_closed_form` | 22, 1 √, 2 sc, 2 gd |  |
 /// | `joints` | 63, 2 √, 4 at, 4 gd |  |
 /// | `actuator_positions` | 45, 2 √, 2 at, 4 gd |  |
+/// | `pose_step` | 67, 2 √, 2 sc, 2 at, 7 gd |  |
 /// | `inverse_jacobian` | 43, 2 √, 6 gd |  |
 /// | `inverse_jacobian_from_joints` | 8, 4 sc, 2 gd |  |
 /// | `jacobian` | 51, 2 √, 7 gd |  |
@@ -389,6 +390,88 @@ impl FiveBar {
                 2.7800779418373054 * l1_y_right - 4.155859313945751 * l1_x_right,
                 2.7800779418373054 * l1_x_right + 4.155859313945751 * l1_y_right,
             ) + 0.981211984016226,
+        ])
+    }
+    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 2.
+    ///
+    /// 67 operations (23 additions, 39 multiplications, 5 divisions), 2 square roots, 2 trigonometric pairs, 2 arc tangents, 7 guards, 1 negation, 73 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn pose_step(
+        pose: &[::core::primitive::f64; 2],
+        actuators: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        // --- sines and cosines
+        let [(s_actuator_1, c_actuator_1), (s_actuator_2, c_actuator_2)] = ::overact::math::sin_cos_all([
+            actuators[0], actuators[1],
+        ]);
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
+        let missed_1 = ::overact::math::atan2(
+            l1_x_left * s_actuator_1 - l1_y_left * c_actuator_1,
+            l1_x_left * c_actuator_1 + l1_y_left * s_actuator_1,
+        );
+        let missed_2 = ::overact::math::atan2(
+            l1_x_right * s_actuator_2 - l1_y_right * c_actuator_2,
+            l1_x_right * c_actuator_2 + l1_y_right * s_actuator_2,
+        );
+        ::core::result::Result::Ok([
+            -(t2 * (g1_vy_right * missed_1 + minus_g1_vy_left * missed_2)),
+            t2 * (g1_vx_right * missed_1 + minus_g1_vx_left * missed_2),
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -5521,6 +5604,25 @@ impl FiveBar {
             return ::core::result::Result::Ok(pose);
         }
         let mut pose = *start;
+        let mut stepped = pose;
+        let find = |
+            pose: &[::core::primitive::f64],
+            step: &mut [::core::primitive::f64]|
+        {
+            ::overact::block::write(
+                &Self::pose_step(::overact::block::array(pose)?, actuators)?,
+                step,
+            );
+            ::core::result::Result::Ok(())
+        };
+        if ::overact::forward::steps(
+            &mut stepped,
+            &mut [0.0; Self::DOF],
+            find,
+            ::overact::forward::displace,
+        ) {
+            return ::core::result::Result::Ok(stepped);
+        }
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
                     positions: actuators,
@@ -5590,6 +5692,10 @@ impl ::overact::Model for FiveBar {
             ::overact::Function::ActuatorPositions => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::actuator_positions(row.row(0)?))
+            }
+            ::overact::Function::PoseStep => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_step(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseJacobian => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

@@ -14,6 +14,7 @@
 /// | `pose_in_closed_form` | 29, 1 √, 2 sc, 2 gd |  |
 /// | `joints` | 94, 3 √, 6 at, 6 gd |  |
 /// | `actuator_positions` | 67, 3 √, 3 at, 6 gd |  |
+/// | `pose_step` | 129, 3 √, 3 sc, 3 at, 11 gd |  |
 /// | `inverse_jacobian` | 70, 3 √, 9 gd |  |
 /// | `inverse_jacobian_from_joints` | 24, 6 sc, 3 gd |  |
 /// | `jacobian` | 108, 3 √, 11 gd |  |
@@ -27,24 +28,24 @@
 /// | `acceleration_from_actuators` | 162, 3 √, 11 gd |  |
 /// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators` | 267, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 16 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 186, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 10 gd |  |
 /// | `inverse_dynamics` | 291, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_from_joints` | 255, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 362, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_from_actuators` | 362, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `inverse_dynamics_base` | 268, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 233, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
 /// | `bias` | 227, 3 √, 6 sg, 9 gd |  |
@@ -449,6 +450,134 @@ impl ThreeLegPoint {
                 2.851400643478032 * l1_y_leg3 - 3.038194444317904 * l1_x_leg3,
             ) + 2.3878997609246957,
         ])
+    }
+    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 2.
+    ///
+    /// 129 operations (49 additions, 72 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn pose_step(
+        pose: &[::core::primitive::f64; 2],
+        actuators: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / (2 l_1)
+        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- sines and cosines
+        let [(s_actuator_2, c_actuator_2), (s_actuator_1, c_actuator_1),
+        (s_actuator_3, c_actuator_3)] = ::overact::math::sin_cos_all([
+            actuators[1], actuators[0], actuators[2],
+        ]);
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + INV_TWICE_L_1 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let missed_2 = ::overact::math::atan2(
+            l1_x_leg2 * s_actuator_2 - l1_y_leg2 * c_actuator_2,
+            l1_x_leg2 * c_actuator_2 + l1_y_leg2 * s_actuator_2,
+        );
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let missed_1 = ::overact::math::atan2(
+            l1_x_leg1 * s_actuator_1 + minus_l1_y_leg1 * c_actuator_1,
+            l1_x_leg1 * c_actuator_1 - minus_l1_y_leg1 * s_actuator_1,
+        );
+        let missed_3 = ::overact::math::atan2(
+            l1_x_leg3 * s_actuator_3 - l1_y_leg3 * c_actuator_3,
+            l1_x_leg3 * c_actuator_3 + l1_y_leg3 * s_actuator_3,
+        );
+        let t1 = g1_vx_leg2 * missed_2 - minus_g1_vx_leg1 * missed_1
+            + g1_vx_leg3 * missed_3;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = (g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
+            - minus_g1_vy_leg3 * missed_3 + minus_l_2_1 * t1) / pivot_2;
+        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -1790,7 +1919,7 @@ impl ThreeLegPoint {
     /// Columns: `PARAMETERS`.
     ///
     /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 19 negations, 286 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2597,7 +2726,7 @@ impl ThreeLegPoint {
     /// Columns: `PARAMETERS`.
     ///
     /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 20 negations, 321 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3307,7 +3436,7 @@ impl ThreeLegPoint {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 15 negations, 272 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4022,7 +4151,7 @@ impl ThreeLegPoint {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 13 negations, 309 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4953,7 +5082,7 @@ impl ThreeLegPoint {
     /// Output: 3.
     ///
     /// 362 operations (153 additions, 189 multiplications, 20 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 365 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5689,7 +5818,7 @@ impl ThreeLegPoint {
     /// Output: 3.
     ///
     /// 340 operations (138 additions, 191 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 343 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7969,6 +8098,25 @@ impl ThreeLegPoint {
             closed,
             *start,
             |mut pose: [::core::primitive::f64; Self::POSE]| {
+                let mut stepped = pose;
+                let find = |
+                    pose: &[::core::primitive::f64],
+                    step: &mut [::core::primitive::f64]|
+                {
+                    ::overact::block::write(
+                        &Self::pose_step(::overact::block::array(pose)?, actuators)?,
+                        step,
+                    );
+                    ::core::result::Result::Ok(())
+                };
+                if ::overact::forward::steps(
+                    &mut stepped,
+                    &mut [0.0; Self::DOF],
+                    find,
+                    ::overact::forward::displace,
+                ) {
+                    return ::core::result::Result::Ok(stepped);
+                }
                 ::overact::forward::gauss_newton(
                         ::overact::forward::Measured {
                             positions: actuators,
@@ -8046,6 +8194,10 @@ impl ::overact::Model for ThreeLegPoint {
             ::overact::Function::ActuatorPositions => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::actuator_positions(row.row(0)?))
+            }
+            ::overact::Function::PoseStep => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_step(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseJacobian => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

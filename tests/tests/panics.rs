@@ -2,8 +2,8 @@
 //!
 //! All robots are compiled without the standard library into one shared object, whose panic handler calls a
 //! function that nothing defines. The linker drops the handler where nothing reaches it; where something
-//! does it refuses to link, and names the function. Only the full tier does this: optimising all modules
-//! takes minutes of processor time.
+//! does it refuses to link, and names the function. Only the full tier does this, with one robot in four: optimising
+//! all modules, as the tier of the night does, takes minutes of processor time.
 
 use overact_codegen::derivation::JointsBy;
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with, emission};
@@ -23,8 +23,12 @@ fn optimised_modules_have_no_way_to_a_panic() -> Result<(), Failure> {
     if !overact_tier::is_full() {
         return Ok(());
     }
+    let apart = if overact_tier::is_night() { 1 } else { 4 };
     let robots = stems()?;
-    let modules = robots.iter().map(|stem| Ok((stem.clone(), module(stem)?)));
+    let modules = robots
+        .iter()
+        .step_by(apart)
+        .map(|stem| Ok((stem.clone(), module(stem)?)));
     let mut modules = modules.collect::<Result<Vec<_>, Failure>>()?;
     modules.push(("newton".to_owned(), with_newtons_method()?));
     let said = link("robots", &modules)?;

@@ -2,8 +2,8 @@
 //! that fail the same one is told.
 //!
 //! Vectors are taken in optimised builds only, so a program of its own is built with optimisation: for the processor's
-//! smallest vectors, for those that it finds out when it runs, and for those of AVX2 and of AVX-512 alone. Only the full tier does
-//! this: it takes a minute.
+//! smallest vectors and for those that it finds out when it runs, which takes a minute, so that the full tier does it; and
+//! for those of AVX2 and of AVX-512 alone, at night.
 
 use overact_codegen::{Effort, Request, compile_with, emission};
 use overact_tests::support::{Failure, description, repository};
@@ -24,7 +24,7 @@ const ROBOTS: [&str; 7] = [
     "spherical_4rrr",
 ];
 
-const FUNCTIONS: [&str; 12] = [
+const FUNCTIONS: [&str; 13] = [
     "idm_red_platform",
     "idm_red_platform_base",
     "idm_red_platform_from_joints",
@@ -37,6 +37,7 @@ const FUNCTIONS: [&str; 12] = [
     "bias_base",
     "forward_dynamics",
     "forward_dynamics_base",
+    "pose_step",
 ];
 
 #[test]
@@ -64,6 +65,9 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     }
     run(&folder, "", &[])?;
     run(&folder, "", &["--features", "dispatch"])?;
+    if !overact_tier::is_night() {
+        return Ok(());
+    }
     if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
         run(&folder, "-Ctarget-feature=+avx2", &[])?;
     }
@@ -245,6 +249,7 @@ macro_rules! compare {
                 A::forward_dynamics_base(p, t, &torques, &base),
                 B::forward_dynamics_base(p, t, &torques, &base),
             );
+            seen.same(A::pose_step(p, &torques), B::pose_step(p, &torques));
         }
         let [agree, fail] = seen.0;
         println!("{} {agree} agree, {fail} fail", A::NAME);

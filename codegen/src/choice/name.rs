@@ -97,9 +97,7 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         Condition::Parasitic => {
             ": that is one of robots whose platform has `independent` coordinates"
         }
-        Condition::PrismaticActuators => {
-            ": that is one of robots whose actuators are all prismatic and whose joints follow by rule"
-        }
+        Condition::JointsByRule => ": that is one of robots with loops whose joints follow by rule",
         _ if function.columns().is_some() => {
             ": where the parameters are known there are no identification models"
         }

@@ -4,7 +4,7 @@ use super::forward_kinematics::closed_form;
 use super::motion_input::MotionInput;
 use super::selection::JointsBy;
 use crate::cas::Arena;
-use crate::mechanism::{JointKind, Mechanism};
+use crate::mechanism::Mechanism;
 use overact_core::{Condition, Function};
 
 /// All functions of a robot with what they are evaluated from.
@@ -23,9 +23,7 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, Moti
         Condition::ClosedForm => closed,
         Condition::NumericJoints => joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
-        Condition::PrismaticActuators => {
-            !tree && joints == JointsBy::Rule && is_moved_by_slides(mechanism)
-        }
+        Condition::JointsByRule => !tree && joints == JointsBy::Rule,
         _ => true,
     };
     let with = |function| {
@@ -38,14 +36,6 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, Moti
         .filter(has)
         .flat_map(with)
         .collect()
-}
-
-/// Whether all actuators are prismatic joints, whose positions differ by no turns.
-fn is_moved_by_slides(mechanism: &Mechanism) -> bool {
-    let joints = mechanism.joints();
-    let actuated = mechanism.actuated();
-    let mut kinds = actuated.iter().map(|&at| mechanism.joint(joints[at]).kind);
-    kinds.all(|kind| kind == JointKind::Prismatic)
 }
 
 /// What a function is evaluated from: those that run at every sample of a log from everything that a log

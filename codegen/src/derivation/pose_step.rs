@@ -12,11 +12,13 @@
 //! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
 //! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
 
+use super::configuration::Unit;
 use super::elimination::{Rows, adjugate};
 use super::guard::GuardKind;
 use super::linear::{apply, dot, product};
 use super::sheet::Sheet;
 use crate::cas::Expr;
+use crate::mechanism::JointKind;
 use crate::mechanism::numeric::best_conditioned;
 use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
@@ -38,9 +40,7 @@ impl<'a> Sheet<'a, '_> {
     /// The step from the pose towards the actuators.
     pub(super) fn pose_step(&mut self) -> Vec<Expr<'a>> {
         let positions = self.actuator_positions();
-        let measured = self.input("actuators", positions.len());
-        let pairs = measured.iter().zip(&positions);
-        let differences: Vec<Expr<'a>> = pairs.map(|(m, own)| *m - *own).collect();
+        let differences = self.differences();
         if positions.len() != self.robot.mechanism.dof() {
             return self.least_squares(&differences);
         }
@@ -60,6 +60,32 @@ impl<'a> Sheet<'a, '_> {
             }
             None => self.least_squares(&differences),
         }
+    }
+
+    /// q - q(x), of angles the difference nearest to zero: the angle between their directions, which knows no turns.
+    pub(super) fn differences(&mut self) -> Vec<Expr<'a>> {
+        let positions = self.actuator_positions();
+        let measured = self.input("actuators", positions.len());
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let (configuration, joints) = (&self.robot.configuration, mechanism.joints());
+        let actuated = mechanism.actuated().into_iter().enumerate();
+        let difference = |(k, index): (usize, usize)| {
+            let unit = match mechanism.joint(joints[index]).kind {
+                JointKind::Revolute => configuration.unit(&configuration.joint_angle(index)),
+                _ => None,
+            };
+            let Some((cosine, sine)) = unit.map(unscaled) else {
+                return measured[k] - positions[k];
+            };
+            let (c, s) = arena.cosine_and_sine(&arena.input_angle("actuators", k));
+            let (c, s) = (
+                c.named(&format!("c_actuator_{}", k + 1)),
+                s.named(&format!("s_actuator_{}", k + 1)),
+            );
+            (s * cosine - c * sine).atan2(c * cosine + s * sine)
+        };
+        let named = |at: (usize, usize)| difference(at).named(&format!("missed_{}", at.0 + 1));
+        actuated.map(named).collect()
     }
 
     /// Guards determinants of blocks that may vanish where J is regular.
@@ -141,6 +167,16 @@ impl<'a> Sheet<'a, '_> {
         let x = apply(&cofactors, &remainder).into_iter();
         Some(x.map(|x| x * reciprocal).chain(y).collect())
     }
+}
+
+/// A direction without the constant by which both components are multiplied.
+fn unscaled<'a>((x, y): Unit<'a>) -> Unit<'a> {
+    let ((a, own_x), (b, own_y)) = (x.factor_and_base(), y.factor_and_base());
+    if a.value().abs() != b.value().abs() {
+        return (x, y);
+    }
+    let signed = |sign: f64, base: Expr<'a>| if sign < 0.0 { -base } else { base };
+    (signed(a.value(), own_x), signed(b.value(), own_y))
 }
 
 /// The solution of a system of few rows by Cramer's rule.

@@ -3,7 +3,7 @@
 //! The mass matrix M, the bias h and Γ¹ are sums of what each leg's bodies add and of what the platform adds,
 //! for they are linear in the parameters. So is JᵀJ with J = J_p^inv, of which each leg has the rows of its own
 //! actuators. Solving with these sums takes no leg apart; of the solution x = (JᵀJ)⁻¹ Γ¹ a leg's torques are its
-//! rows of J times x. A small square J is solved by cofactors, from the rows of all legs. So one leg is enough to
+//! rows of J times x, and of Jᵀ (q - q(x)) in the place of Γ¹ it is a step of forward kinematics. A small square J is solved by cofactors, from the rows of all legs. So one leg is enough to
 //! write the function for all that differ from it in nothing but numbers.
 
 use super::actuators::{ActuatorSystem, COFACTORS, OwnForces};
@@ -85,7 +85,7 @@ pub(crate) fn derive_of_sums(arena: &Arena, function: Function, dof: usize) -> D
     let vector = |first: usize| (first..first + dof).map(sum).collect::<Vec<Expr<'_>>>();
     let symmetric = || symmetric(dof, &sum);
     let kind = match function {
-        Function::InverseDynamics(_) => GuardKind::Platform {
+        Function::InverseDynamics(_) | Function::PoseStep => GuardKind::Platform {
             home: 1.0,
             actuators: ActuatorGroup::All,
         },
@@ -93,7 +93,7 @@ pub(crate) fn derive_of_sums(arena: &Arena, function: Function, dof: usize) -> D
     };
     let (rows, count, pivots) = match function {
         Function::MassMatrix(_) => (symmetric(), upper, Vec::new()),
-        Function::InverseDynamics(_) | Function::ForwardDynamics(_) => {
+        Function::InverseDynamics(_) | Function::ForwardDynamics(_) | Function::PoseStep => {
             let factored = Factored::of(symmetric());
             let solved = factored.solve(&vector(upper));
             (column(solved), upper + dof, factored.pivots)
@@ -189,6 +189,7 @@ impl<'a> Sheet<'a, '_> {
                 Function::Bias(of) => self.own_bias(of),
                 Function::ForwardDynamics(of) => self.own_forward(of, n),
                 Function::InverseDynamics(of) => self.own_inverse(of, &mut parts),
+                Function::PoseStep if n != self.robot.mechanism.dof() => self.own_step(),
                 _ => return None,
             };
             match owner {
@@ -222,6 +223,17 @@ impl<'a> Sheet<'a, '_> {
         let columns = transposed(&rows);
         let row = |a: &Vec<Expr<'a>>| columns.iter().map(|b| dot(a, b)).collect();
         columns.iter().map(row).collect()
+    }
+
+    /// What the owner adds to JᵀJ and to Jᵀ (q - q(x)).
+    fn own_step(&mut self) -> Vec<Expr<'a>> {
+        let differences = self.differences();
+        let rows = self.own_jacobian();
+        let moved = match rows.is_empty() {
+            true => self.zeros(),
+            false => apply(&transposed(&rows), &differences[..rows.len()]),
+        };
+        [upper(&self.own_normal()), moved].concat()
     }
 
     /// What the owner adds to h.

@@ -64,7 +64,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
 
 /// Whether the table gives the robot the function.
 fn is_offered(model: &RobotModel, function: Function) -> bool {
-    use overact_codegen::{derivation::JointsBy, mechanism::JointKind};
+    use overact_codegen::derivation::JointsBy;
     let mechanism = &model.mechanism;
     let platform = mechanism.platform.as_ref();
     match function.condition() {
@@ -73,13 +73,7 @@ fn is_offered(model: &RobotModel, function: Function) -> bool {
         Condition::Payload => platform.is_some_and(|p| p.payload.is_some()),
         Condition::NumericJoints => model.selection.joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
-        Condition::PrismaticActuators => {
-            let joints = mechanism.joints();
-            let actuated = mechanism.actuated();
-            let mut kinds = actuated.iter().map(|&at| mechanism.joint(joints[at]).kind);
-            let slides = kinds.all(|kind| kind == JointKind::Prismatic);
-            slides && !mechanism.is_tree() && model.selection.joints == JointsBy::Rule
-        }
+        Condition::JointsByRule => !mechanism.is_tree() && model.selection.joints == JointsBy::Rule,
         // Whether there is a closed form is the generator's knowledge alone.
         Condition::ClosedForm => model.served(function).is_some(),
         _ => true,

@@ -1,11 +1,12 @@
 //! The step of forward kinematics is (J_p^inv)⁺ times what the actuators miss, for any difference and not only for
-//! those of poses that exist.
+//! those of poses that exist, and whole turns of an angle are none.
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model, SampleError};
 use overact_tests::support::Failure;
 use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
+use std::f64::consts::TAU;
 
 /// Largest difference, relative to the largest number of the step.
 const TOLERANCE: f64 = 1e-10;
@@ -36,6 +37,12 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
             off < TOLERANCE,
             "{stem}: {step} for {wanted}, off by {off:e}"
         );
+        let is_revolute = compiled.info().actuator_is_revolute.iter().enumerate();
+        let turns = is_revolute.map(|(k, is)| if *is { TAU * (k as f64 - 1.0) } else { 0.0 });
+        let turned = measured + DVector::from_iterator(sizes.actuators, turns);
+        let same = ask(Function::PoseStep, &[pose, turned.as_slice()])?;
+        let off = (&same - &wanted).amax() / wanted.amax();
+        assert!(off < TOLERANCE, "{stem}: {same} for {wanted} behind turns");
     }
     if sizes.actuators == sizes.dof && sizes.dof > 3 {
         passes_singular_blocks(stem, compiled)?;
@@ -48,12 +55,18 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
 fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     let sizes = robot.info().sizes;
     let home = robot.info().home_pose.to_vec();
-    let at = |along: f64| {
+    let on_circle = |radius: f64, along: f64| {
         let mut pose = home.clone();
-        pose[0] += 0.3 * along.cos();
-        pose[1] += 0.3 * along.sin();
+        pose[0] += radius * along.cos();
+        pose[1] += radius * along.sin();
         pose
     };
+    let radius = [0.3, 0.1, 0.03, 0.01].into_iter().find(|&radius| {
+        let mut along = (0..60).map(|k| f64::from(k) * 0.1);
+        along.all(|along| is_reached(robot, &on_circle(radius, along)))
+    });
+    let radius = radius.ok_or("no circle is within reach")?;
+    let at = |along: f64| on_circle(radius, along);
     let mut rows = vec![0.0; sizes.actuators * sizes.dof];
     let mut found = 0;
     for (first, second) in (0..sizes.dof).flat_map(|j| (0..j).map(move |i| (i, j))) {
@@ -87,6 +100,12 @@ fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> 
     }
     assert!(found > 5, "{stem}: {found} poses");
     Ok(())
+}
+
+fn is_reached(robot: &dyn Model, pose: &[f64]) -> bool {
+    let mut positions = vec![0.0; robot.info().sizes.actuators];
+    let done = robot.evaluate(Function::ActuatorPositions, &[pose], &mut positions);
+    done.is_ok()
 }
 
 /// The step is right or refused, so that forward kinematics goes on by normal equations.

@@ -1,8 +1,9 @@
 //! Which tier of the tests runs.
 //!
 //! `cargo test --workspace` runs the default tier: every test, over few states, mechanisms and seeds.
-//! `OVERACT_TESTS=full cargo test --workspace` runs the full tier: the same tests over many. A test
-//! asks here how much it has to do; nothing else reads the variables.
+//! `OVERACT_TESTS=full cargo test --workspace` runs the full tier: the same tests over many, and
+//! `OVERACT_TESTS=night` what takes minutes of compiling besides. A test asks here how much it has to do;
+//! nothing else reads the variables.
 
 /// The environment variable that chooses how many robots, or draws of noise, are taken at random.
 pub const COUNT: &str = "OVERACT_RANDOM_COUNT";
@@ -10,21 +11,44 @@ pub const COUNT: &str = "OVERACT_RANDOM_COUNT";
 /// The environment variable that chooses the tier.
 pub const VARIABLE: &str = "OVERACT_TESTS";
 
-/// Whether the full tier runs.
+/// The tiers, the smallest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Tier {
+    Default,
+    Full,
+    Night,
+}
+
+/// The tier that runs.
 ///
 /// # Panics
 ///
 /// If the variable has a value that names no tier: a misspelled one would run too little unnoticed.
-#[must_use]
-pub fn is_full() -> bool {
+fn tier() -> Tier {
     let Some(value) = std::env::var_os(VARIABLE) else {
-        return false;
+        return Tier::Default;
     };
     match value.to_str() {
-        Some("full") => true,
-        Some("" | "default") => false,
-        _ => panic!("{VARIABLE} is `default` or `full`, not {}", value.display()),
+        Some("night") => Tier::Night,
+        Some("full") => Tier::Full,
+        Some("" | "default") => Tier::Default,
+        _ => panic!(
+            "{VARIABLE} is `default`, `full` or `night`, not {}",
+            value.display()
+        ),
     }
+}
+
+/// Whether the full tier runs, or that of the night.
+#[must_use]
+pub fn is_full() -> bool {
+    tier() >= Tier::Full
+}
+
+/// Whether the tier of the night runs, which leaves out nothing.
+#[must_use]
+pub fn is_night() -> bool {
+    tier() == Tier::Night
 }
 
 /// How much the tier that runs has to do, of `[default, full]`.

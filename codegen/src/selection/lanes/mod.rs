@@ -40,6 +40,9 @@ const FEW_OF_SUMS: usize = 1440;
 /// Those of a mass matrix, of which two lanes lose most of what legs share.
 const MANY_OF_MASSES: usize = 1000;
 
+/// Those of a step of forward kinematics, at whose end roots and quotients wait for each other.
+const FEW_OF_STEPS: usize = 480;
+
 /// The fewest legs that are worth it.
 const LEGS: usize = 3;
 
@@ -103,6 +106,7 @@ fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -
             (false, 3) => (600, FEW / legs),
             (false, _) => (FEW_OF_SUMS / legs, FEW / legs),
         },
+        Function::PoseStep => (TOO_LONG, FEW_OF_STEPS),
         _ => return None,
     };
     match operations {

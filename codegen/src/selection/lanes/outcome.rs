@@ -197,7 +197,7 @@ fn at_state(assembler: &Assembler<'_>, state: &State, name: &str) -> Option<Vec<
         "joints" => Some(state.joints.clone()),
         "twist" => Some(state.twist.clone()),
         "acceleration" => Some(state.acceleration.clone()),
-        "torques" => {
+        "torques" | "actuators" => {
             let count = assembler.mechanism.actuated().len();
             Some((0..count).map(|at| (at as f64).sin()).collect())
         }
