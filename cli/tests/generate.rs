@@ -208,6 +208,7 @@ fn only_what_is_chosen_is_written_and_what_it_calls() {
     let called = [
         "pose_in_closed_form",
         "actuator_positions",
+        "pose_step",
         "inverse_jacobian",
         "inverse_dynamics_from_actuators",
         "pose_from_actuators",

@@ -126,7 +126,7 @@ impl Function {
         match self {
             Self::PoseInClosedForm => Entry {
                 name: "pose_in_closed_form",
-                summary: "The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.",
+                summary: "The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.",
                 inputs: &[Actuators],
                 rows: Extent::Pose,
                 columns: None,
@@ -150,7 +150,7 @@ impl Function {
             },
             Self::PoseStep => Entry {
                 name: "pose_step",
-                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.",
+                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.",
                 inputs: &[Pose, Actuators],
                 rows: Extent::Dof,
                 columns: None,

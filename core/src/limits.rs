@@ -15,6 +15,8 @@ pub struct Limits {
     pub quaternion: f64,
     /// Forward kinematics has converged when the largest step is below this (m, rad).
     pub step: f64,
+    /// Beyond (m, rad) a pose is rounded by more than that step, and steps vanish that have led nowhere.
+    pub farthest: f64,
     /// A pivot of the normal matrix below this fraction of the largest counts as zero.
     pub pivot: f64,
     /// Newton's method on the joints has converged when the largest step is below this (m, rad).
@@ -30,6 +32,7 @@ pub const DOUBLE: Limits = Limits {
     singular: SINGULAR,
     quaternion: 1e-8,
     step: 1e-12,
+    farthest: 4e3,
     pivot: 1e-15,
     joint_step: 1e-13,
     closed: 1e-10,
@@ -42,6 +45,7 @@ pub const SINGLE: Limits = Limits {
     singular: 1e-5,
     quaternion: 2e-4,
     step: 1e-5,
+    farthest: 80.0,
     pivot: 1e-7,
     joint_step: 3e-6,
     closed: 3e-5,

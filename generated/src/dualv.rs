@@ -106,6 +106,9 @@
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
+/// | `missed_1` | q - q(x) | how far an actuator is from its measured position, in the step of forward kinematics |
+/// | `c_actuator_1` | cos q | of the measured position of an actuator |
+/// | `s_actuator_1` | sin q | its sine |
 /// | `share_3_4` | J_a^-T j | what a kept actuator does against the unit torque of a projected one, eq. (50) |
 /// | `norm_4` | √(1 + c · Q c) | length of the internal torque that does one at a projected actuator |
 /// | `inv_norm_4` | 1/√(1 + c · Q c) | the reciprocal |
@@ -363,7 +366,7 @@ impl DualV {
             ),
         ]
     };
-    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.
     ///
     /// From the actuators' positions.
     /// - `actuators`: q, positions of the actuated joints (m, rad)
@@ -675,7 +678,7 @@ impl DualV {
             ) + 3.9300804648578436,
         ])
     }
-    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -14449,7 +14452,7 @@ impl DualV {
             [inv_norm_4],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. The iteration starts from `pose_in_closed_form` where that is near `start`, or where it fails from there.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.
     ///
     /// # Errors
     /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.

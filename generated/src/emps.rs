@@ -589,7 +589,7 @@ impl Emps {
         ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
         ::core::result::Result::Ok([torques[0]])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
     ///
     /// # Errors
     /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.

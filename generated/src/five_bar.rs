@@ -90,6 +90,9 @@
 /// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `l_2_1` | L | entry of L |
+/// | `missed_1` | q - q(x) | how far an actuator is from its measured position, in the step of forward kinematics |
+/// | `c_actuator_1` | cos q | of the measured position of an actuator |
+/// | `s_actuator_1` | sin q | its sine |
 /// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
 /// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
 /// | `g2_a1_left` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
@@ -229,7 +232,7 @@ impl FiveBar {
             BaseParameter::new("fs_2_right", "fs_2_right", &[]),
         ]
     };
-    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.
     ///
     /// From the actuators' positions.
     /// - `actuators`: q, positions of the actuated joints (m, rad)
@@ -392,7 +395,7 @@ impl FiveBar {
             ) + 0.981211984016226,
         ])
     }
-    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero. Where the elimination would lose digits it is refused, though J_p^inv be regular.
+    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -5591,7 +5594,7 @@ impl FiveBar {
         ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         ::core::result::Result::Ok([torques[0], torques[1]])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.

@@ -4282,7 +4282,7 @@ impl Rx90 {
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
     ///
     /// # Errors
     /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.

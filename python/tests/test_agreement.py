@@ -12,7 +12,7 @@ from conftest import ROBOTS
 import overact
 
 STEMS = sorted(path.stem for path in ROBOTS.glob("*.toml"))
-IS_FULL = os.environ.get("OVERACT_TESTS") == "full"
+IS_FULL = os.environ.get("OVERACT_TESTS") in ("full", "night")
 #: Robots of the default tier: redundant, with one motor, with two, with chains, serial.
 FEW = {"dualv", "emps", "five_bar", "ankle", "rx90"}
 #: What the command line is asked for; it compiles the robot each time.

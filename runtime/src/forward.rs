@@ -83,7 +83,8 @@ pub fn gauss_newton<T: Float>(
 
 /// Takes steps as [`gauss_newton`] does, which `find` writes at once: generated code that has positions and
 /// Jacobian in one and solves the system without a loop. Whether they have led to a pose; if not, which may be for
-/// a pivot that vanishes where the Jacobian is regular, [`gauss_newton`] is asked from the start.
+/// a pivot that vanishes where the Jacobian is regular, or for steps that ran away until rounding ended them,
+/// [`gauss_newton`] is asked from the start.
 #[inline]
 pub fn steps<T: Float>(
     pose: &mut [T],
@@ -91,7 +92,8 @@ pub fn steps<T: Float>(
     find: impl FnMut(&[T], &mut [T]) -> Result<(), Error>,
     displace: impl FnMut(&mut [T], &[T]),
 ) -> bool {
-    iterate(pose, step, find, displace).unwrap_or(false)
+    let ended = iterate(pose, step, find, displace).unwrap_or(false);
+    ended && pose.iter().all(|x| x.abs() <= T::of(T::LIMITS.farthest))
 }
 
 /// Takes steps until the next one would be too small. Whether there is such a step.
@@ -282,7 +284,8 @@ pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
 #[cfg(test)]
 mod tests {
     use super::{
-        Error, Measured, Workspace, from_closed_form, gauss_newton, solve_positive_definite,
+        Error, Measured, Workspace, displace, from_closed_form, gauss_newton,
+        solve_positive_definite, steps,
     };
 
     #[test]
@@ -294,6 +297,17 @@ mod tests {
         solve_positive_definite(factors.as_flattened_mut(), &mut found).expect("regular");
         for (found, wanted) in found.iter().zip(solution) {
             assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn steps_that_vanish_far_away_have_led_nowhere() {
+        for (far, has_led) in [(1e16, false), (1e3, true)] {
+            let find = |pose: &[f64], step: &mut [f64]| {
+                step[0] = if pose[0] < far { far } else { 0.0 };
+                Ok(())
+            };
+            assert_eq!(steps(&mut [0.0], &mut [0.0], find, displace), has_led);
         }
     }
 

@@ -5,8 +5,9 @@
 //!
 //! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
 //! trigonometry come from the standard library, with the feature `libm` and without `std` from the crate of
-//! that name. With the feature `dispatch` (default) optimised programs for any x86-64 find out when they run whether the
-//! processor has AVX2 or AVX-512, and use them: long functions are compiled once or twice more.
+//! that name. With the feature `dispatch` (default, and with it `std`) programs for any x86-64 that are optimised (level 2
+//! and 3) find out when they run whether the processor has AVX2 or AVX-512, and use them: long functions are compiled once
+//! or twice more, and last digits may differ from one kind of processor to another.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(not(any(feature = "std", feature = "libm")))]

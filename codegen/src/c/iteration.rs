@@ -156,14 +156,14 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
     let mut out = String::new();
     if model.forward_kinematics {
         let way = match closed_form(model) {
-            ClosedForm::None => "",
+            ClosedForm::None => " It keeps the assembly mode of `start`.",
             ClosedForm::Alone => " It is pose_in_closed_form where that has a value.",
             ClosedForm::Start => {
-                " The iteration starts from pose_in_closed_form where that is near `start`, or where it fails from there."
+                " The iteration starts from pose_in_closed_form where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration."
             }
         };
         let lines = [
-            format!("Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.{way}"),
+            format!("Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.{way}"),
             String::new(),
             "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
             "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),

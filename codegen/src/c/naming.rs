@@ -96,6 +96,7 @@ impl Naming {
         let limits = self.float.limits();
         for (name, limit) in [
             ("LIMIT_CLOSED", limits.closed),
+            ("LIMIT_FARTHEST", limits.farthest),
             ("LIMIT_JOINT_STEP", limits.joint_step),
             ("LIMIT_PARTITION", limits.partition),
             ("LIMIT_PIVOT", limits.pivot),

@@ -126,7 +126,7 @@ fn pattern(function: Function) -> TokenStream {
 /// Forward kinematics as an associated function.
 #[must_use]
 pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
-    let doc = " Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.";
+    let doc = " Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.";
     let kind = expression::kind(model.float);
     if model.is_tree() {
         return quote! {
@@ -201,7 +201,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
     let (way, body) = match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
-            " The iteration starts from `pose_in_closed_form` where that is near `start`, or where it fails from there.",
+            " The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.",
             quote! {
                 let closed = Self::pose_in_closed_form(actuators).ok();
                 ::overact::forward::from_closed_form(closed, *start, |mut pose: [#kind; Self::POSE]| {
@@ -222,7 +222,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             },
         ),
         None => (
-            "",
+            " It keeps the assembly mode of `start`.",
             quote! {
                 let mut pose = *start;
                 #at_once

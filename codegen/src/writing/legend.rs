@@ -269,6 +269,17 @@ const KINDS: &[Kind] = &[
     kind("inv_pivot_$", "1/d_k", "its reciprocal"),
     kind("l_$_$", "L", "entry of L"),
     kind(
+        "missed_$",
+        "q - q(x)",
+        "how far an actuator is from its measured position, in the step of forward kinematics",
+    ),
+    kind(
+        "c_actuator_$",
+        "cos q",
+        "of the measured position of an actuator",
+    ),
+    kind("s_actuator_$", "sin q", "its sine"),
+    kind(
         "share_$_$",
         "J_a^-T j",
         "what a kept actuator does against the unit torque of a projected one, eq. (50)",

@@ -24,8 +24,11 @@ impl InterpretedRobot {
             return self.pose_from_actuators(actuators, pose);
         }
         let mut from = vec![0.0; actuators.len()];
-        self.evaluate(Function::ActuatorPositions, &[pose], &mut from)
-            .map_err(|error| error.error)?;
+        let reached = self.evaluate(Function::ActuatorPositions, &[pose], &mut from);
+        if reached.is_err() {
+            // There is no way from a pose that the robot has not; a closed form needs none.
+            return self.pose_from_actuators(actuators, pose);
+        }
         let difference = |((to, from), revolute): ((&f64, &f64), &bool)| {
             if *revolute {
                 wrap_angle(to - from)

@@ -139,6 +139,7 @@ macro_rules! redundant_backend {
             $backend, $label, $robot,
             joints(pose);
             actuator_positions(pose);
+            pose_step(pose, missed);
             inverse_jacobian(pose);
             inverse_jacobian_from_joints(pose, joints);
             jacobian(pose);

@@ -143,6 +143,7 @@ impl Sample {
             "twist" | "joint_velocities" => self.state.twist.as_slice(),
             "acceleration" | "joint_accelerations" => self.state.acceleration.as_slice(),
             "actuators" => &self.actuators,
+            "missed" => &self.missed,
             "actuator_velocities" => &self.actuator_velocities,
             "actuator_accelerations" => &self.actuator_accelerations,
             "torques" => &self.torques,

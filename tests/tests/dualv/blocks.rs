@@ -1,6 +1,7 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
 use overact::{ActuatorGroup, Columns, Function};
+use overact_codegen::CompiledFunction;
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::internals::{random_states, sample};
@@ -21,14 +22,15 @@ fn dualv_samples() -> Result<Vec<Sample>, Failure> {
 }
 
 /// Evaluates all samples at once; the parameters of the first serve all.
-fn at_once(program: &Program, all: &[Sample]) -> Result<Vec<f64>, Failure> {
+fn at_once(function: &CompiledFunction, all: &[Sample]) -> Result<Vec<f64>, Failure> {
+    let program = &function.program;
     let gather = |name: &str| -> Result<(Vec<f64>, bool), Failure> {
         if name == "parameters" {
             return Ok((all[0].parameters.clone(), true));
         }
         let mut values = Vec::new();
         for sample in all {
-            values.extend(sample.input(name)?);
+            values.extend(sample.argument(function.computes, name)?);
         }
         Ok((values, false))
     };
@@ -53,13 +55,13 @@ fn blocks_give_what_single_samples_give() -> Result<(), Failure> {
     let model = dualv()?;
     let all = dualv_samples()?;
     for function in &model.functions {
-        let together = at_once(&function.program, &all)?;
+        let together = at_once(function, &all)?;
         let parts = together.chunks(function.program.output.len());
         let mut worst = 0.0_f64;
         for (part, sample) in parts.zip(&all) {
             let single = evaluate(&function.program, &|name| match name {
                 "parameters" => Some(&all[0].parameters),
-                _ => sample.input(name).ok(),
+                _ => sample.argument(function.computes, name).ok(),
             })?;
             let scale = single.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             for (a, b) in part.iter().zip(&single) {

@@ -2,10 +2,11 @@
 //! those of poses that exist, and whole turns of an angle are none.
 
 use nalgebra::{DMatrix, DVector};
-use overact::{Function, Model, SampleError};
+use overact::{Function, Model, SampleError, math::wrap_angle};
 use overact_tests::support::Failure;
 use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
+use overact_tier::by_tier;
 use std::f64::consts::TAU;
 
 /// Largest difference, relative to the largest number of the step.
@@ -44,8 +45,45 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         let off = (&same - &wanted).amax() / wanted.amax();
         assert!(off < TOLERANCE, "{stem}: {same} for {wanted} behind turns");
     }
-    if sizes.actuators == sizes.dof && sizes.dof > 3 {
+    let is_square = sizes.actuators == sizes.dof;
+    if is_square && sizes.dof > 3 {
         passes_singular_blocks(stem, compiled)?;
+    }
+    if is_square && model.served(Function::PoseInClosedForm).is_none() {
+        fits_or_refuses(stem, compiled)?;
+    }
+    Ok(())
+}
+
+/// Of actuators that no pose may have, forward kinematics finds a pose that has them, or none.
+fn fits_or_refuses(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
+    let info = robot.info();
+    let mut home = vec![0.0; info.sizes.actuators];
+    robot
+        .evaluate(Function::ActuatorPositions, &[info.home_pose], &mut home)
+        .map_err(|error| error.error)?;
+    let mut positions = home.clone();
+    for case in 0..by_tier([1000, 30_000]) {
+        let away = |k: usize| (f64::from(case) * 7.3 + k as f64 * 1.7).sin();
+        let wanted: Vec<f64> = (home.iter().enumerate())
+            .map(|(k, q)| q + away(k))
+            .collect();
+        let mut pose = info.home_pose.to_vec();
+        if robot.pose_from_actuators(&wanted, &mut pose).is_err() {
+            continue;
+        }
+        robot
+            .evaluate(Function::ActuatorPositions, &[&pose], &mut positions)
+            .map_err(|error| error.error)?;
+        let pairs = positions.iter().zip(&wanted).zip(info.actuator_is_revolute);
+        for ((found, wanted), is_revolute) in pairs {
+            let missed = if *is_revolute {
+                wrap_angle(found - wanted)
+            } else {
+                found - wanted
+            };
+            assert!(missed.abs() < 1e-8, "{stem}: {pose:?} of {wanted:?}");
+        }
     }
     Ok(())
 }
