@@ -5,7 +5,7 @@ use overact_codegen::CompiledFunction;
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::internals::{random_states, sample};
-use overact_codegen::lowering::{Condition, Program};
+use overact_codegen::lowering::Condition;
 use overact_compiled::DualV;
 use overact_tests::reference::robots;
 use overact_tests::support::backend::evaluate;
