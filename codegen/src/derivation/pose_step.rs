@@ -9,6 +9,9 @@
 //!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
 //!   adjugate over determinant: one division a block.
 //!
+//! Of an angle q with the direction (c, s) that is (c', s') at the pose, q - q(x) is the angle from one direction to the
+//! other, that of (c c' + s s', s c' - c s'). Whole turns are none in it, and a common factor of c' and s' does not matter.
+//!
 //! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
 //! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
 

@@ -3,8 +3,9 @@
 //! The mass matrix M, the bias h and Γ¹ are sums of what each leg's bodies add and of what the platform adds,
 //! for they are linear in the parameters. So is JᵀJ with J = J_p^inv, of which each leg has the rows of its own
 //! actuators. Solving with these sums takes no leg apart; of the solution x = (JᵀJ)⁻¹ Γ¹ a leg's torques are its
-//! rows of J times x, and of Jᵀ (q - q(x)) in the place of Γ¹ it is a step of forward kinematics. A small square J is solved by cofactors, from the rows of all legs. So one leg is enough to
-//! write the function for all that differ from it in nothing but numbers.
+//! rows of J times x. With Jᵀ (q - q(x)) in the place of Γ¹ the solution is a step of forward kinematics. A small square J
+//! is solved by cofactors, from the rows of all legs. So one leg is enough to write the function for all that differ
+//! from it in nothing but numbers.
 
 use super::actuators::{ActuatorSystem, COFACTORS, OwnForces};
 use super::elimination::{Rows, inverse};
