@@ -133,14 +133,23 @@ def rust_main(function, template):
     starts = np.cumsum([0] + [length for _, length in function.inputs])
     spans = [f"values[{a}..{b}].try_into()?" for a, b in zip(starts, starts[1:], strict=False)]
     text = (TEMPLATES / template).read_text()
+    call = f"{function.robot}::{function.document['robot']}::{function.rust_name}"
+    arguments = [f"&s.{i}" for i in range(len(function.inputs))]
+    written = "()"
+    # The peers write into what is handed in, too.
+    if function.rust_name.startswith("idm_red"):
+        rows, columns = function.shape
+        call, written = f"{call}_into", f"[[0.0_f64; {columns}]; {rows}]"
+        arguments.append("&mut written")
     for key, value in {
         "MODULE": function.robot,
         "TYPES": ", ".join(f"[f64; {length}]" for _, length in function.inputs),
         "READ": ", ".join(spans),
         "LENGTHS": ", ".join(str(length) for _, length in function.inputs),
         "TOTAL": str(starts[-1]),
-        "CALL": f"{function.robot}::{function.document['robot']}::{function.rust_name}",
-        "ARGUMENTS": ", ".join(f"&s.{i}" for i in range(len(function.inputs))),
+        "CALL": call,
+        "ARGUMENTS": ", ".join(arguments),
+        "WRITTEN": written,
         "DESCRIPTION": str(function.path),
         "COLUMNS": function.kind.capitalize(),
     }.items():

@@ -60,6 +60,8 @@
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -2114,24 +2116,38 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
             acceleration: &'a [::core::primitive::f64; 3],
+            output: &'a mut [[::core::primitive::f64; 64]; 3],
         }
         impl ::overact::lanes::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [[::core::primitive::f64; 64]; 3],
-                ::overact::Error,
-            >;
+            type Output = ::core::result::Result<(), ::overact::Error>;
             #[inline(always)]
             fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
-                let Self { pose, twist, acceleration } = self;
+                let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
                 /// l_ab²
@@ -2146,7 +2162,7 @@ impl DualV {
                     + s_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                let mut output = [[0.0; 64]; 3];
+                *output = [[0.0; 64]; 3];
                 output[0][61] = -minus_mx_platform_on_vx;
                 output[0][62] = my_platform_on_vx;
                 output[0][63] = acceleration[0];
@@ -2482,11 +2498,16 @@ impl DualV {
                     );
                     ::overact::lanes::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
-                ::core::result::Result::Ok(output)
+                ::core::result::Result::Ok(())
             }
         }
         if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs { pose, twist, acceleration });
+            return ::overact::lanes::few(Legs {
+                pose,
+                twist,
+                acceleration,
+                output,
+            });
         }
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -2502,18 +2523,239 @@ impl DualV {
         const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
         /// 2 l_ab²
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        output[0][60] = 0.0;
+        output[0][63] = acceleration[0];
+        output[1][60] = 0.0;
+        output[1][63] = acceleration[1];
+        output[2][60] = acceleration[2];
+        output[2][63] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- platform
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][61] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][62] = -a_x_platform;
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
+        let p_y_leg1 = R_P * c_phi;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][61] = -minus_mx_platform_on_vx;
+        output[1][62] = -minus_mx_platform_on_vx;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        output[0][62] = my_platform_on_vx;
+        output[1][61] = -my_platform_on_vx;
+        // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+        output[1][41] = -minus_gq2_vy_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        output[0][44] = minus_g2_vx_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+        output[0][34] = g1_vx_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        output[0][41] = -minus_gq2_vx_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
+        output[1][44] = minus_g2_vy_leg3;
+        let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
+        output[1][34] = g1_vy_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        output[2][34] = g1_wz_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        output[2][41] = -minus_gq2_wz_leg3;
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        output[2][44] = gq3_wz_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        output[0][32] = g1_vx_leg3 * rate_1_leg3;
+        output[1][32] = g1_vy_leg3 * rate_1_leg3;
+        output[2][32] = g1_wz_leg3 * rate_1_leg3;
+        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
+        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
+        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
+        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
+        output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
+        output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
+        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
+        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
+        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        output[0][30] = zz_1_leg3_on_vx;
+        output[0][31] = zz_1_leg3_on_vx;
+        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        output[0][35] = zz_2_leg3_on_vx;
+        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+        output[0][36] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+        output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vy_leg3 * a2_x_leg3;
+        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_wz_leg3 * a2_x_leg3;
+        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+        output[1][30] = zz_1_leg3_on_vy;
+        output[1][31] = zz_1_leg3_on_vy;
+        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+        output[2][30] = zz_1_leg3_on_wz;
+        output[2][31] = zz_1_leg3_on_wz;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        output[1][35] = zz_2_leg3_on_vy;
+        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        output[2][35] = zz_2_leg3_on_wz;
+        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+        output[1][36] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+        output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+        output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+        let r_p_dwz = R_P * acceleration[2];
+        let a3_x_leg3 = a_x_platform + r_p_dwz;
+        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
+        output[2][36] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+        // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        let k1_leg4 = 1.0 / det_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        output[1][59] = -g2_vy_leg4;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        output[0][49] = -minus_g1_vx_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        output[0][59] = -g2_vx_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        output[1][49] = -minus_g1_vy_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        output[0][45] = zz_1_leg4_on_vx;
+        output[0][46] = zz_1_leg4_on_vx;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+        output[0][50] = zz_2_leg4_on_vx;
+        output[0][51] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+        output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
+        output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+        output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
+        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4);
+        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4);
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        output[2][49] = -minus_g1_wz_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4);
+        output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        output[0][56] = gq2_vx_leg4;
+        output[0][54] = qd_2_leg4 * gq2_vx_leg4;
+        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
+        output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
+        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
+        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
+        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        output[1][45] = zz_1_leg4_on_vy;
+        output[1][46] = zz_1_leg4_on_vy;
+        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        output[2][45] = zz_1_leg4_on_wz;
+        output[2][46] = zz_1_leg4_on_wz;
+        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
+        output[1][50] = zz_2_leg4_on_vy;
+        output[1][51] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
+        output[2][50] = zz_2_leg4_on_wz;
+        output[2][51] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+        output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+        output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        output[1][56] = gq2_vy_leg4;
+        output[1][54] = qd_2_leg4 * gq2_vy_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        output[2][56] = gq2_wz_leg4;
+        output[2][54] = qd_2_leg4 * gq2_wz_leg4;
+        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
+        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+        output[2][59] = gq3_wz_leg4;
+        output[2][57] = qd_3_leg4 * gq3_wz_leg4;
+        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
         let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
+        // --- leg1
         let t1_leg1 = x_minus_half_d_x_leg4 - 0.3950502153918333;
         let d_x_leg1 = t1_leg1 + t1_leg1;
-        let p_y_leg1 = R_P * c_phi;
-        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
         let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -2523,62 +2765,103 @@ impl DualV {
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
-        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
-        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        output[0][14] = minus_g2_vx_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        output[1][14] = minus_g2_vy_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        output[0][4] = g1_vx_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        output[0][11] = -minus_gq2_vx_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        output[1][4] = g1_vy_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        output[0][2] = g1_vx_leg1 * rate_1_leg1;
+        output[1][2] = g1_vy_leg1 * rate_1_leg1;
+        output[0][3] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
+        output[1][3] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        output[2][4] = -minus_g1_wz_leg1;
+        output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
+        output[2][3] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        output[1][11] = -minus_gq2_vy_leg1;
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
-        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        output[2][0] = -minus_zz_1_leg1_on_wz;
+        output[2][1] = -minus_zz_1_leg1_on_wz;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        // --- platform
-        let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let r_p_dwz = R_P * acceleration[2];
+        output[2][5] = -minus_zz_2_leg1_on_wz;
         let a3_x_leg1 = r_p_dwz - a_x_platform;
         let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-        // --- leg1
+        output[2][6] = r_p_per_l_ab_a3_x_leg1
+            + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+        output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
         let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1;
+        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+        output[0][0] = zz_1_leg1_on_vx;
+        output[0][1] = zz_1_leg1_on_vx;
+        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+        output[1][0] = zz_1_leg1_on_vy;
+        output[1][1] = zz_1_leg1_on_vy;
+        output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1;
+        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1);
+        output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
+        output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
+        output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
         let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        output[2][11] = gq2_wz_leg1;
+        output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
+        output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
         let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        output[2][14] = gq3_wz_leg1;
+        output[2][12] = qd_3_leg1 * gq3_wz_leg1;
+        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        output[0][5] = zz_2_leg1_on_vx;
+        let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+        output[0][6] = inv_l_ab_a_end_x_leg1
+            - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        output[1][5] = zz_2_leg1_on_vy;
+        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+        output[1][6] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
         // --- leg2
         let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -2590,17 +2873,27 @@ impl DualV {
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        output[0][19] = -minus_g1_vx_leg2;
         let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        output[0][29] = -g2_vx_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        output[1][29] = -g2_vy_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        output[1][19] = -minus_g1_vy_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
@@ -2608,262 +2901,72 @@ impl DualV {
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
         let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        output[0][15] = zz_1_leg2_on_vx;
+        output[0][16] = zz_1_leg2_on_vx;
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
-        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        output[0][20] = zz_2_leg2_on_vx;
+        output[0][21] = inv_l_ab_a_end_x_leg1
+            - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+        output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
+        output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
+        output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
+        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vx_leg2 * a2_x_leg2);
+        output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vy_leg2 * a2_x_leg2);
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        output[2][19] = g1_wz_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            + minus_g2_wz_leg2 * a2_x_leg2;
+        output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
+        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        output[0][26] = gq2_vx_leg2;
+        output[0][24] = qd_2_leg2 * gq2_vx_leg2;
+        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
         let qd_3_leg2 = twist[2] - rate_2_leg2;
+        output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
+        output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
+        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
+        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        output[1][15] = zz_1_leg2_on_vy;
+        output[1][16] = zz_1_leg2_on_vy;
+        let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        output[2][15] = -minus_zz_1_leg2_on_wz;
+        output[2][16] = -minus_zz_1_leg2_on_wz;
+        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
+        output[1][20] = zz_2_leg2_on_vy;
+        output[1][21] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+        let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        output[2][20] = -minus_zz_2_leg2_on_wz;
+        output[2][21] = r_p_per_l_ab_a3_x_leg1
+            + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+        output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
+        output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        output[1][26] = gq2_vy_leg2;
+        output[1][24] = qd_2_leg2 * gq2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        output[2][26] = -minus_gq2_wz_leg2;
+        output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2);
+        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
+        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
         let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        // --- leg3
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
-        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-            + minus_g2_vy_leg3 * v_end_y_leg3;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg3;
-        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-        let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
-        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3)
-            / det_leg3;
-        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
-            / det_leg3;
-        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-        let a3_x_leg3 = a_x_platform + r_p_dwz;
-        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
-        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-        // --- leg4
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-            + minus_g1_vy_leg4 * v_end_y_leg3;
-        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
-        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
-        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let qd_3_leg4 = twist[2] - rate_2_leg4;
-        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        ::core::result::Result::Ok([
-            [
-                zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, zz_2_leg1_on_vx,
-                inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
-                L_AB_SQUARED * zz_1_leg1_on_vx, minus_qd_2_leg1 * minus_gq2_vx_leg1,
-                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1), -minus_gq2_vx_leg1,
-                minus_g2_vx_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
-                minus_g2_vx_leg1, zz_1_leg2_on_vx, zz_1_leg2_on_vx,
-                minus_g1_vx_leg2 * minus_rate_1_leg2,
-                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                zz_2_leg2_on_vx, inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
-                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
-                L_AB_SQUARED * zz_1_leg2_on_vx, qd_2_leg2 * gq2_vx_leg2,
-                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2), gq2_vx_leg2,
-                -(g2_vx_leg2 * qd_3_leg2), -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
-                -g2_vx_leg2, zz_1_leg3_on_vx, zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, zz_2_leg3_on_vx,
-                inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
-                L_AB_SQUARED * zz_1_leg3_on_vx, minus_qd_2_leg3 * minus_gq2_vx_leg3,
-                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3), -minus_gq2_vx_leg3,
-                minus_g2_vx_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
-                minus_g2_vx_leg3, zz_1_leg4_on_vx, zz_1_leg4_on_vx,
-                minus_g1_vx_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                zz_2_leg4_on_vx, inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
-                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
-                L_AB_SQUARED * zz_1_leg4_on_vx, qd_2_leg4 * gq2_vx_leg4,
-                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), gq2_vx_leg4,
-                -(g2_vx_leg4 * qd_3_leg4), -::overact::math::signed(g2_vx_leg4, qd_3_leg4),
-                -g2_vx_leg4, 0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
-            ],
-            [
-                zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
-                inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
-                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
-                L_AB_SQUARED * zz_1_leg1_on_vy, minus_qd_2_leg1 * minus_gq2_vy_leg1,
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), -minus_gq2_vy_leg1,
-                minus_g2_vy_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
-                minus_g2_vy_leg1, zz_1_leg2_on_vy, zz_1_leg2_on_vy,
-                minus_g1_vy_leg2 * minus_rate_1_leg2,
-                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                zz_2_leg2_on_vy, inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
-                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
-                L_AB_SQUARED * zz_1_leg2_on_vy, qd_2_leg2 * gq2_vy_leg2,
-                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2), gq2_vy_leg2,
-                -(g2_vy_leg2 * qd_3_leg2), -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
-                -g2_vy_leg2, zz_1_leg3_on_vy, zz_1_leg3_on_vy, g1_vy_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vy_leg3, rate_1_leg3), g1_vy_leg3, zz_2_leg3_on_vy,
-                inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
-                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
-                L_AB_SQUARED * zz_1_leg3_on_vy, minus_qd_2_leg3 * minus_gq2_vy_leg3,
-                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3), -minus_gq2_vy_leg3,
-                minus_g2_vy_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
-                minus_g2_vy_leg3, zz_1_leg4_on_vy, zz_1_leg4_on_vy,
-                minus_g1_vy_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                zz_2_leg4_on_vy, inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
-                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
-                L_AB_SQUARED * zz_1_leg4_on_vy, qd_2_leg4 * gq2_vy_leg4,
-                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), gq2_vy_leg4,
-                -(g2_vy_leg4 * qd_3_leg4), -::overact::math::signed(g2_vy_leg4, qd_3_leg4),
-                -g2_vy_leg4, 0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
-            ],
-            [
-                -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                -minus_zz_2_leg1_on_wz,
-                r_p_per_l_ab_a3_x_leg1
-                    + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
-                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
-                -(L_AB_SQUARED * minus_zz_1_leg1_on_wz),
-                -(minus_qd_2_leg1 * gq2_wz_leg1),
-                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                gq2_wz_leg1,
-                qd_3_leg1 * gq3_wz_leg1,
-                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
-                gq3_wz_leg1,
-                -minus_zz_1_leg2_on_wz,
-                -minus_zz_1_leg2_on_wz,
-                -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
-                g1_wz_leg2,
-                -minus_zz_2_leg2_on_wz,
-                r_p_per_l_ab_a3_x_leg1
-                    + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
-                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
-                -(L_AB_SQUARED * minus_zz_1_leg2_on_wz),
-                -(qd_2_leg2 * minus_gq2_wz_leg2),
-                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
-                -minus_gq2_wz_leg2,
-                qd_3_leg2 * gq3_wz_leg2,
-                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
-                gq3_wz_leg2,
-                zz_1_leg3_on_wz,
-                zz_1_leg3_on_wz,
-                g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3,
-                zz_2_leg3_on_wz,
-                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
-                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
-                L_AB_SQUARED * zz_1_leg3_on_wz,
-                minus_qd_2_leg3 * minus_gq2_wz_leg3,
-                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
-                -minus_gq2_wz_leg3,
-                qd_3_leg3 * gq3_wz_leg3,
-                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
-                gq3_wz_leg3,
-                zz_1_leg4_on_wz,
-                zz_1_leg4_on_wz,
-                minus_g1_wz_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4),
-                -minus_g1_wz_leg4,
-                zz_2_leg4_on_wz,
-                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
-                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
-                L_AB_SQUARED * zz_1_leg4_on_wz,
-                qd_2_leg4 * gq2_wz_leg4,
-                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4),
-                gq2_wz_leg4,
-                qd_3_leg4 * gq3_wz_leg4,
-                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4),
-                gq3_wz_leg4,
-                acceleration[2],
-                a_y_platform,
-                -a_x_platform,
-                0.0,
-            ],
-        ])
+        output[2][29] = gq3_wz_leg2;
+        output[2][27] = qd_3_leg2 * gq3_wz_leg2;
+        output[2][28] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
+        ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2886,13 +2989,32 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_joints_into(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -2905,80 +3027,165 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// r_p² / l_ab
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            output[0][60] = 0.0;
+            output[0][63] = acceleration[0];
+            output[1][60] = 0.0;
+            output[1][63] = acceleration[1];
+            output[2][60] = acceleration[2];
+            output[2][63] = 0.0;
             // --- sines and cosines
-            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
+            let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1),
             (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
             (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
+                pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[2][61] = a_y_platform;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            output[2][62] = -a_x_platform;
             // --- leg1
-            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-            let k1_leg1 = INV_L_AB / s2_leg1;
-            let g1_vx_leg1 = c12_leg1 * k1_leg1;
             let p_x_leg3 = R_P * s_phi;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let p_y_leg1 = R_P * c_phi;
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][61] = -minus_mx_platform_on_vx;
+            output[1][62] = -minus_mx_platform_on_vx;
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+            output[0][62] = my_platform_on_vx;
+            output[1][61] = -my_platform_on_vx;
+            let k1_leg1 = INV_L_AB / s2_leg1;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            output[0][14] = minus_g2_vx_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            output[1][14] = minus_g2_vy_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let g1_vx_leg1 = c12_leg1 * k1_leg1;
+            output[0][4] = g1_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let g1_vy_leg1 = s12_leg1 * k1_leg1;
+            output[1][4] = g1_vy_leg1;
+            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+            output[2][4] = -minus_g1_wz_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][11] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][14] = gq3_wz_leg1;
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][2] = g1_vx_leg1 * rate_1_leg1;
+            output[1][2] = g1_vy_leg1 * rate_1_leg1;
+            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
+            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[2][3] = -::overact::math::wide::signed(
+                minus_g1_wz_leg1,
+                rate_1_leg1,
+            );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+            output[0][10] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+            output[1][10] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                minus_qd_2_leg1,
+            );
+            output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+            output[2][10] = -::overact::math::wide::signed(
+                gq2_wz_leg1,
+                minus_qd_2_leg1,
+            );
+            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_rate_2_squared_leg1 = L_AB * rate_2_squared_leg1;
             let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
                 + s12_leg1 * a_end_y_leg1 + l_ab_rate_2_squared_leg1;
-            let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
+            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+                + l_ab_rate_1_squared_leg1;
+            output[0][7] = g1_vx_leg1 * a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
-            let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
-            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
-            let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-                + l_ab_rate_1_squared_leg1;
+            output[0][0] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-            // --- platform
+            output[0][5] = zz_2_leg1_on_vx;
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+            output[0][6] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+                + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
+            output[2][7] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+                + g2_wz_leg1 * minus_a_on_f1_leg1);
+            let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+            output[1][0] = zz_1_leg1_on_vy;
+            output[1][1] = zz_1_leg1_on_vy;
+            let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+            output[2][0] = -minus_zz_1_leg1_on_wz;
+            output[2][1] = -minus_zz_1_leg1_on_wz;
+            let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+            output[2][5] = -minus_zz_2_leg1_on_wz;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
             let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            output[1][6] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
             let inv_r_p_a_x_platform = INV_R_P * a_x_platform;
             let t1_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] - inv_r_p_a_x_platform);
-            // --- leg1
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][6] = t1_platform
+                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
+            output[0][13] = ::overact::math::wide::signed(
+                minus_g2_vx_leg1,
+                qd_3_leg1,
+            );
+            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
+            output[1][13] = ::overact::math::wide::signed(
+                minus_g2_vy_leg1,
+                qd_3_leg1,
+            );
+            output[2][12] = qd_3_leg1 * gq3_wz_leg1;
+            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
             // --- leg2
+            let k1_leg2 = INV_L_AB / s2_leg2;
+            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+            output[0][29] = minus_g2_vx_leg2;
+            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            output[1][29] = minus_g2_vy_leg2;
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let k1_leg2 = INV_L_AB / s2_leg2;
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            output[0][19] = g1_vx_leg2;
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
                 + minus_g2_vy_leg2 * v_end_y_leg1;
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
@@ -2986,82 +3193,216 @@ impl DualV {
             let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
                 + s12_leg2 * a_end_y_leg1 + l_ab_rate_2_squared_leg2;
             let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            output[1][19] = g1_vy_leg2;
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
             let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
-            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
-            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
-            let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
+            output[0][15] = zz_1_leg2_on_vx;
+            output[0][16] = zz_1_leg2_on_vx;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_vx;
+            output[0][21] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
+            output[0][17] = g1_vx_leg2 * rate_1_leg2;
+            output[1][17] = g1_vy_leg2 * rate_1_leg2;
+            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            output[0][22] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            output[1][22] = g1_vy_leg2 * a_on_f2_leg2
+                + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
+            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+            output[2][19] = -minus_g1_wz_leg2;
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
-            let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
+            output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+                + g2_wz_leg2 * minus_a_on_f1_leg2);
+            output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2);
+            output[2][18] = -::overact::math::wide::signed(
+                minus_g1_wz_leg2,
+                rate_1_leg2,
+            );
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
-            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+            output[0][26] = -minus_gq2_vx_leg2;
+            output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
+            output[0][25] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg2,
+                minus_qd_2_leg2,
+            );
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+            output[0][27] = minus_g2_vx_leg2 * qd_3_leg2;
+            output[0][28] = ::overact::math::wide::signed(
+                minus_g2_vx_leg2,
+                qd_3_leg2,
+            );
+            output[1][27] = minus_g2_vy_leg2 * qd_3_leg2;
+            output[1][28] = ::overact::math::wide::signed(
+                minus_g2_vy_leg2,
+                qd_3_leg2,
+            );
+            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+            output[1][15] = zz_1_leg2_on_vy;
+            output[1][16] = zz_1_leg2_on_vy;
+            let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
+            output[2][15] = -minus_zz_1_leg2_on_wz;
+            output[2][16] = -minus_zz_1_leg2_on_wz;
+            let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][20] = zz_2_leg2_on_vy;
+            output[1][21] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
+            output[2][20] = -minus_zz_2_leg2_on_wz;
+            output[2][21] = t1_platform
+                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
+            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
+            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
+            output[1][26] = -minus_gq2_vy_leg2;
+            output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
+            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+            output[2][26] = gq2_wz_leg2;
+            output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2);
+            output[1][25] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg2,
+                minus_qd_2_leg2,
+            );
+            output[2][25] = -::overact::math::wide::signed(
+                gq2_wz_leg2,
+                minus_qd_2_leg2,
+            );
             let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
+            output[2][29] = gq3_wz_leg2;
+            output[2][27] = qd_3_leg2 * gq3_wz_leg2;
+            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
             // --- leg3
-            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let k1_leg3 = INV_L_AB / s2_leg3;
+            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+            output[0][44] = minus_g2_vx_leg3;
+            let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+            output[1][44] = minus_g2_vy_leg3;
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            output[0][34] = g1_vx_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            output[1][34] = g1_vy_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][32] = g1_vx_leg3 * rate_1_leg3;
+            output[1][32] = g1_vy_leg3 * rate_1_leg3;
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][34] = g1_wz_leg3;
+            output[2][32] = g1_wz_leg3 * rate_1_leg3;
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + L_AB * rate_2_squared_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+                + L_AB * rate_1_squared_leg3;
+            output[0][37] = g1_vx_leg3 * a_on_f2_leg3
+                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
-                + L_AB * rate_1_squared_leg3;
+            output[0][30] = zz_1_leg3_on_vx;
+            output[0][31] = zz_1_leg3_on_vx;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = zz_2_leg3_on_vx;
+            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+            output[1][37] = g1_vy_leg3 * a_on_f2_leg3
+                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
+            output[2][37] = g1_wz_leg3 * a_on_f2_leg3
+                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
+            output[0][40] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+            output[0][43] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            );
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+            output[1][43] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            );
+            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][30] = zz_1_leg3_on_vy;
+            output[1][31] = zz_1_leg3_on_vy;
+            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+            output[2][30] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz;
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
             let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+            output[2][35] = zz_2_leg3_on_wz;
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] + inv_r_p_a_x_platform);
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = zz_2_leg3_on_vy;
+            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3;
+            output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            output[2][41] = -minus_gq2_wz_leg3;
+            output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+            output[1][40] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][40] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            );
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][44] = gq3_wz_leg3;
+            output[2][42] = qd_3_leg3 * gq3_wz_leg3;
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
             // --- leg4
+            let k1_leg4 = INV_L_AB / s2_leg4;
+            let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+            output[0][59] = minus_g2_vx_leg4;
+            let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+            output[1][59] = minus_g2_vy_leg4;
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-            let k1_leg4 = INV_L_AB / s2_leg4;
             let g1_vx_leg4 = c12_leg4 * k1_leg4;
-            let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
-            let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+            output[0][49] = g1_vx_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
                 + minus_g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
@@ -3069,277 +3410,93 @@ impl DualV {
             let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3
                 + s12_leg4 * a_end_y_leg3 + l_ab_rate_2_squared_leg4;
             let g1_vy_leg4 = s12_leg4 * k1_leg4;
+            output[1][49] = g1_vy_leg4;
             let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
             let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
             let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
-            let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
-            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-            let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
+            output[0][45] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
             let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-            let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_vx;
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
+            output[0][47] = g1_vx_leg4 * rate_1_leg4;
+            output[1][47] = g1_vy_leg4 * rate_1_leg4;
+            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
+            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
+            output[0][52] = g1_vx_leg4 * a_on_f2_leg4
+                + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
+            output[1][52] = g1_vy_leg4 * a_on_f2_leg4
+                + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
+            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+            output[2][49] = g1_wz_leg4;
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
-            let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+            output[2][52] = g1_wz_leg4 * a_on_f2_leg4
+                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
+            output[2][47] = g1_wz_leg4 * rate_1_leg4;
+            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
-            let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
-            let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
+            output[0][56] = -minus_gq2_vx_leg4;
+            output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4;
+            output[0][55] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg4,
+                minus_qd_2_leg4,
+            );
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+            output[0][57] = minus_g2_vx_leg4 * qd_3_leg4;
+            output[0][58] = ::overact::math::wide::signed(
+                minus_g2_vx_leg4,
+                qd_3_leg4,
+            );
+            output[1][57] = minus_g2_vy_leg4 * qd_3_leg4;
+            output[1][58] = ::overact::math::wide::signed(
+                minus_g2_vy_leg4,
+                qd_3_leg4,
+            );
+            let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy;
+            let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_wz;
+            output[2][46] = zz_1_leg4_on_wz;
+            let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_vy;
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+            let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_wz;
+            output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
+            let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
+            output[1][56] = -minus_gq2_vy_leg4;
+            output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
+            let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
+            output[2][56] = -minus_gq2_wz_leg4;
+            output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
+            output[1][55] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg4,
+                minus_qd_2_leg4,
+            );
+            output[2][55] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg4,
+                minus_qd_2_leg4,
+            );
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
-            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            ::core::result::Result::Ok([
-                [
-                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                    zz_2_leg1_on_vx,
-                    inv_l_ab_a_end_x_leg1
-                        - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                    g1_vx_leg1 * a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a_on_f1_leg1,
-                    L_AB_SQUARED * zz_1_leg1_on_vx,
-                    minus_qd_2_leg1 * minus_gq2_vx_leg1,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    -minus_gq2_vx_leg1,
-                    minus_g2_vx_leg1 * qd_3_leg1,
-                    ::overact::math::wide::signed(minus_g2_vx_leg1, qd_3_leg1),
-                    minus_g2_vx_leg1,
-                    zz_1_leg2_on_vx,
-                    zz_1_leg2_on_vx,
-                    g1_vx_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    g1_vx_leg2,
-                    zz_2_leg2_on_vx,
-                    inv_l_ab_a_end_x_leg1
-                        - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
-                    g1_vx_leg2 * a_on_f2_leg2
-                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                    L_AB_SQUARED * zz_1_leg2_on_vx,
-                    minus_qd_2_leg2 * minus_gq2_vx_leg2,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    -minus_gq2_vx_leg2,
-                    minus_g2_vx_leg2 * qd_3_leg2,
-                    ::overact::math::wide::signed(minus_g2_vx_leg2, qd_3_leg2),
-                    minus_g2_vx_leg2,
-                    zz_1_leg3_on_vx,
-                    zz_1_leg3_on_vx,
-                    g1_vx_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    g1_vx_leg3,
-                    zz_2_leg3_on_vx,
-                    inv_l_ab_a_end_x_leg3
-                        - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                    g1_vx_leg3 * a_on_f2_leg3
-                        + minus_g2_vx_leg3 * minus_a_on_f1_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_vx,
-                    minus_qd_2_leg3 * minus_gq2_vx_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_vx_leg3,
-                    minus_g2_vx_leg3 * qd_3_leg3,
-                    ::overact::math::wide::signed(minus_g2_vx_leg3, qd_3_leg3),
-                    minus_g2_vx_leg3,
-                    zz_1_leg4_on_vx,
-                    zz_1_leg4_on_vx,
-                    g1_vx_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4),
-                    g1_vx_leg4,
-                    zz_2_leg4_on_vx,
-                    inv_l_ab_a_end_x_leg3
-                        - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
-                    g1_vx_leg4 * a_on_f2_leg4
-                        + minus_g2_vx_leg4 * minus_a_on_f1_leg4,
-                    L_AB_SQUARED * zz_1_leg4_on_vx,
-                    minus_qd_2_leg4 * minus_gq2_vx_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    -minus_gq2_vx_leg4,
-                    minus_g2_vx_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(minus_g2_vx_leg4, qd_3_leg4),
-                    minus_g2_vx_leg4,
-                    0.0,
-                    -minus_mx_platform_on_vx,
-                    my_platform_on_vx,
-                    acceleration[0],
-                ],
-                [
-                    zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                    zz_2_leg1_on_vy,
-                    inv_l_ab_a_end_y_leg1
-                        - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
-                    g1_vy_leg1 * a_on_f2_leg1
-                        + minus_g2_vy_leg1 * minus_a_on_f1_leg1,
-                    L_AB_SQUARED * zz_1_leg1_on_vy,
-                    minus_qd_2_leg1 * minus_gq2_vy_leg1,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    -minus_gq2_vy_leg1,
-                    minus_g2_vy_leg1 * qd_3_leg1,
-                    ::overact::math::wide::signed(minus_g2_vy_leg1, qd_3_leg1),
-                    minus_g2_vy_leg1,
-                    zz_1_leg2_on_vy,
-                    zz_1_leg2_on_vy,
-                    g1_vy_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
-                    g1_vy_leg2,
-                    zz_2_leg2_on_vy,
-                    inv_l_ab_a_end_y_leg1
-                        - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
-                    g1_vy_leg2 * a_on_f2_leg2
-                        + minus_g2_vy_leg2 * minus_a_on_f1_leg2,
-                    L_AB_SQUARED * zz_1_leg2_on_vy,
-                    minus_qd_2_leg2 * minus_gq2_vy_leg2,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    -minus_gq2_vy_leg2,
-                    minus_g2_vy_leg2 * qd_3_leg2,
-                    ::overact::math::wide::signed(minus_g2_vy_leg2, qd_3_leg2),
-                    minus_g2_vy_leg2,
-                    zz_1_leg3_on_vy,
-                    zz_1_leg3_on_vy,
-                    g1_vy_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3),
-                    g1_vy_leg3,
-                    zz_2_leg3_on_vy,
-                    inv_l_ab_a_end_y_leg3
-                        - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
-                    g1_vy_leg3 * a_on_f2_leg3
-                        + minus_g2_vy_leg3 * minus_a_on_f1_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_vy,
-                    minus_qd_2_leg3 * minus_gq2_vy_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_vy_leg3,
-                    minus_g2_vy_leg3 * qd_3_leg3,
-                    ::overact::math::wide::signed(minus_g2_vy_leg3, qd_3_leg3),
-                    minus_g2_vy_leg3,
-                    zz_1_leg4_on_vy,
-                    zz_1_leg4_on_vy,
-                    g1_vy_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4),
-                    g1_vy_leg4,
-                    zz_2_leg4_on_vy,
-                    inv_l_ab_a_end_y_leg3
-                        - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
-                    g1_vy_leg4 * a_on_f2_leg4
-                        + minus_g2_vy_leg4 * minus_a_on_f1_leg4,
-                    L_AB_SQUARED * zz_1_leg4_on_vy,
-                    minus_qd_2_leg4 * minus_gq2_vy_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    -minus_gq2_vy_leg4,
-                    minus_g2_vy_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(minus_g2_vy_leg4, qd_3_leg4),
-                    minus_g2_vy_leg4,
-                    0.0,
-                    -my_platform_on_vx,
-                    -minus_mx_platform_on_vx,
-                    acceleration[1],
-                ],
-                [
-                    -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz,
-                    -(minus_g1_wz_leg1 * rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_wz_leg1, rate_1_leg1),
-                    -minus_g1_wz_leg1, -minus_zz_2_leg1_on_wz,
-                    t1_platform
-                        + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
-                    -(minus_g1_wz_leg1 * a_on_f2_leg1
-                        + g2_wz_leg1 * minus_a_on_f1_leg1),
-                    -(L_AB_SQUARED * minus_zz_1_leg1_on_wz),
-                    -(minus_qd_2_leg1 * gq2_wz_leg1),
-                    -::overact::math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                    gq2_wz_leg1,
-                    qd_3_leg1 * gq3_wz_leg1,
-                    ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1),
-                    gq3_wz_leg1,
-                    -minus_zz_1_leg2_on_wz,
-                    -minus_zz_1_leg2_on_wz,
-                    -(minus_g1_wz_leg2 * rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_wz_leg2, rate_1_leg2),
-                    -minus_g1_wz_leg2,
-                    -minus_zz_2_leg2_on_wz,
-                    t1_platform
-                        + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
-                    -(minus_g1_wz_leg2 * a_on_f2_leg2
-                        + g2_wz_leg2 * minus_a_on_f1_leg2),
-                    -(L_AB_SQUARED * minus_zz_1_leg2_on_wz),
-                    -(minus_qd_2_leg2 * gq2_wz_leg2),
-                    -::overact::math::wide::signed(gq2_wz_leg2, minus_qd_2_leg2),
-                    gq2_wz_leg2,
-                    qd_3_leg2 * gq3_wz_leg2,
-                    ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2),
-                    gq3_wz_leg2,
-                    zz_1_leg3_on_wz,
-                    zz_1_leg3_on_wz,
-                    g1_wz_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3),
-                    g1_wz_leg3,
-                    zz_2_leg3_on_wz,
-                    t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
-                    g1_wz_leg3 * a_on_f2_leg3
-                        + minus_g2_wz_leg3 * minus_a_on_f1_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_wz,
-                    minus_qd_2_leg3 * minus_gq2_wz_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_wz_leg3,
-                    qd_3_leg3 * gq3_wz_leg3,
-                    ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3),
-                    gq3_wz_leg3,
-                    zz_1_leg4_on_wz,
-                    zz_1_leg4_on_wz,
-                    g1_wz_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4),
-                    g1_wz_leg4,
-                    zz_2_leg4_on_wz,
-                    t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
-                    g1_wz_leg4 * a_on_f2_leg4
-                        + minus_g2_wz_leg4 * minus_a_on_f1_leg4,
-                    L_AB_SQUARED * zz_1_leg4_on_wz,
-                    minus_qd_2_leg4 * minus_gq2_wz_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    -minus_gq2_wz_leg4,
-                    qd_3_leg4 * gq3_wz_leg4,
-                    ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4),
-                    gq3_wz_leg4,
-                    acceleration[2],
-                    a_y_platform,
-                    -a_x_platform,
-                    0.0,
-                ],
-            ])
+            output[2][59] = gq3_wz_leg4;
+            output[2][57] = qd_3_leg4 * gq3_wz_leg4;
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3364,6 +3521,25 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_actuators_into(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -3371,7 +3547,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -3388,18 +3564,85 @@ impl DualV {
             const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][60] = 0.0;
+            output[1][60] = 0.0;
+            output[2][63] = 0.0;
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let p_y_leg1 = R_P * c_phi;
+            // --- leg3
+            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let half_d_x_leg3 = 0.5 * d_x_leg3;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            let k1_leg3 = 1.0 / det_leg3;
+            let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            output[0][44] = minus_g2_vx_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            output[0][34] = g1_vx_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            output[1][44] = minus_g2_vy_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            output[1][34] = g1_vy_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][34] = g1_wz_leg3;
+            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][41] = -minus_gq2_wz_leg3;
+            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][44] = gq3_wz_leg3;
+            // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            let k1_leg4 = 1.0 / det_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            output[1][59] = -g2_vy_leg4;
             let half_d_x_leg4 = 0.5 * d_x_leg4;
+            let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            output[0][49] = -minus_g1_vx_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            output[1][49] = -minus_g1_vy_leg4;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            output[2][49] = -minus_g1_wz_leg4;
+            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+            output[1][56] = gq2_vy_leg4;
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            output[0][59] = -g2_vx_leg4;
+            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+            output[0][56] = gq2_vx_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+            output[2][56] = gq2_wz_leg4;
+            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[2][59] = gq3_wz_leg4;
+            // --- leg1
             let half_d_x_leg4_minus_p_x_leg3 = half_d_x_leg4 - p_x_leg3;
             let d_x_leg1 = half_d_x_leg4_minus_p_x_leg3
                 + half_d_x_leg4_minus_p_x_leg3;
-            let p_y_leg1 = R_P * c_phi;
-            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -3409,15 +3652,32 @@ impl DualV {
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            output[0][14] = minus_g2_vx_leg1;
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            output[1][14] = minus_g2_vy_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            output[0][4] = g1_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let half_d_x_leg3 = 0.5 * d_x_leg3;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            output[1][4] = g1_vy_leg1;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            output[2][4] = -minus_g1_wz_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][11] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][14] = gq3_wz_leg1;
             // --- leg2
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
@@ -3426,53 +3686,39 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
             let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
             let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            output[0][29] = -g2_vx_leg2;
+            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            output[1][19] = -minus_g1_vy_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            output[0][19] = -minus_g1_vx_leg2;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            // --- leg3
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-            let k1_leg3 = 1.0 / det_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            // --- leg4
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
+            output[2][19] = g1_wz_leg2;
+            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+            output[0][26] = gq2_vx_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            output[1][29] = -g2_vy_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][26] = gq2_vy_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+            output[2][26] = -minus_gq2_wz_leg2;
+            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+            output[2][29] = gq3_wz_leg2;
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
                 - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -3522,25 +3768,168 @@ impl DualV {
                 ::overact::ActuatorGroup::All,
             )?;
             let wz = t3 / pivot_3;
-            // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
-            let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
-            let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = t2 / pivot_2 - l_3_2 * wz;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][2] = g1_vx_leg1 * rate_1_leg1;
+            output[1][2] = g1_vy_leg1 * rate_1_leg1;
+            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
+            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[2][3] = -::overact::math::wide::signed(
+                minus_g1_wz_leg1,
+                rate_1_leg1,
+            );
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
+            output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+            output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
+            output[0][18] = ::overact::math::wide::signed(
+                minus_g1_vx_leg2,
+                minus_rate_1_leg2,
+            );
+            output[1][18] = ::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                minus_rate_1_leg2,
+            );
+            output[2][18] = -::overact::math::wide::signed(
+                g1_wz_leg2,
+                minus_rate_1_leg2,
+            );
+            let v_end_x_leg3 = vx + v_arm_x_leg3;
+            let v_end_y_leg3 = vy + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][32] = g1_vx_leg3 * rate_1_leg3;
+            output[1][32] = g1_vy_leg3 * rate_1_leg3;
+            output[2][32] = g1_wz_leg3 * rate_1_leg3;
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+                + minus_g1_vy_leg4 * v_end_y_leg3;
+            output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+            output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+            output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+            output[0][48] = ::overact::math::wide::signed(
+                minus_g1_vx_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][48] = ::overact::math::wide::signed(
+                minus_g1_vy_leg4,
+                minus_rate_1_leg4,
+            );
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_wz_leg4,
+                minus_rate_1_leg4,
+            );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][9] = minus_gq2_vx_leg1 * minus_qd_2_leg1;
+            output[0][10] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][9] = minus_gq2_vy_leg1 * minus_qd_2_leg1;
+            output[1][10] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                minus_qd_2_leg1,
+            );
+            output[2][9] = -(gq2_wz_leg1 * minus_qd_2_leg1);
+            output[2][10] = -::overact::math::wide::signed(
+                gq2_wz_leg1,
+                minus_qd_2_leg1,
+            );
+            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+            output[0][24] = gq2_vx_leg2 * qd_2_leg2;
+            output[0][25] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2);
+            output[1][24] = gq2_vy_leg2 * qd_2_leg2;
+            output[1][25] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
+            output[2][24] = -(minus_gq2_wz_leg2 * qd_2_leg2);
+            output[2][25] = -::overact::math::wide::signed(
+                minus_gq2_wz_leg2,
+                qd_2_leg2,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + wz;
+            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
+            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
+            output[2][12] = gq3_wz_leg1 * qd_3_leg1;
+            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
+            output[0][13] = ::overact::math::wide::signed(
+                minus_g2_vx_leg1,
+                qd_3_leg1,
+            );
+            output[1][13] = ::overact::math::wide::signed(
+                minus_g2_vy_leg1,
+                qd_3_leg1,
+            );
+            let qd_3_leg2 = wz - rate_2_leg2;
+            output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
+            output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
+            output[2][27] = gq3_wz_leg2 * qd_3_leg2;
+            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
+            output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2);
+            output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2);
+            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+                + minus_g2_vy_leg3 * v_end_y_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
+            output[0][40] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
+            output[1][40] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
+            output[2][40] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            );
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][54] = gq2_vx_leg4 * qd_2_leg4;
+            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
+            output[1][54] = gq2_vy_leg4 * qd_2_leg4;
+            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
+            output[2][54] = gq2_wz_leg4 * qd_2_leg4;
+            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
+            output[0][43] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            );
+            output[1][43] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            );
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
+            output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
+            output[2][57] = gq3_wz_leg4 * qd_3_leg4;
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
+            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
+            // --- leg1
+            let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -3548,16 +3937,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
-            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-                + minus_g1_vy_leg2 * v_end_y_leg1;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -3565,18 +3949,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let v_end_y_leg3 = vy + v_arm_y_leg3;
-            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-                + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
             let t2_leg3 = 0.5 * t1_leg3;
@@ -3585,16 +3962,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-                + minus_g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -3615,30 +3987,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
+            output[2][60] = dwz;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
+            output[1][63] = dvy;
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            // --- leg1
+            output[0][63] = dvx;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
-            let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
-            let a_end_y_leg1 = dvy - a_arm_y_leg3;
-            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
-                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
-            let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
-            let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-            let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-            let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
             // --- leg3
             let c12_leg3 = INV_L_AB * l2_x_leg3;
             let s12_leg3 = INV_L_AB * l2_y_leg3;
@@ -3657,334 +4012,183 @@ impl DualV {
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
             let a3_x_leg3 = c3_leg3 * (INV_L_AB * t4_leg3)
                 + s3_leg3 * (a2_y_leg3 - L_AB * minus_rate_dot_2_leg3);
-            let r_p_dwz = R_P * dwz;
-            let a_x_platform = a3_x_leg3 - r_p_dwz;
-            let a3_x_leg1 = r_p_dwz - a_x_platform;
-            let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
+            let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
+            // --- leg4
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_wz;
+            output[2][46] = zz_1_leg4_on_wz;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_wz;
+            output[2][51] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4);
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][61] = a_y_platform;
             // --- leg1
-            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            let a_end_x_leg1 = dvx + a_arm_x_leg1;
+            let a_end_y_leg1 = dvy - a_arm_y_leg3;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
+            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+            output[0][0] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx;
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = zz_2_leg1_on_vx;
+            let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+            output[0][6] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-            let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+            output[0][15] = zz_1_leg2_on_vx;
+            output[0][16] = zz_1_leg2_on_vx;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
-            let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_vx;
+            output[0][21] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1;
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            let qd_3_leg2 = wz - rate_2_leg2;
-            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2);
+            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
+            output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1;
+            output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1);
+            // --- leg1
+            let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+            output[1][0] = zz_1_leg1_on_vy;
+            output[1][1] = zz_1_leg1_on_vy;
+            let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+            output[2][0] = -minus_zz_1_leg1_on_wz;
+            output[2][1] = -minus_zz_1_leg1_on_wz;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
+            let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+            output[2][5] = -minus_zz_2_leg1_on_wz;
+            let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+            output[1][6] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
+            let r_p_dwz = R_P * dwz;
+            let a_x_platform = a3_x_leg3 - r_p_dwz;
+            output[2][62] = -a_x_platform;
+            let a3_x_leg1 = r_p_dwz - a_x_platform;
+            let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
+            output[2][6] = r_p_per_l_ab_a3_x_leg1
+                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
+            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
+            output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vy_leg2 * a2_x_leg2);
+            output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+                + minus_g2_wz_leg2 * a2_x_leg2;
+            // --- leg2
+            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[1][15] = zz_1_leg2_on_vy;
+            output[1][16] = zz_1_leg2_on_vy;
+            let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
+            output[1][20] = zz_2_leg2_on_vy;
+            output[1][21] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+            output[2][15] = -minus_zz_1_leg2_on_wz;
+            output[2][16] = -minus_zz_1_leg2_on_wz;
+            let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+            output[2][20] = -minus_zz_2_leg2_on_wz;
+            output[2][21] = r_p_per_l_ab_a3_x_leg1
+                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
+            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
             // --- leg3
-            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3;
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][30] = zz_1_leg3_on_vx;
+            output[0][31] = zz_1_leg3_on_vx;
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = zz_2_leg3_on_vx;
+            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3;
+            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3;
+            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+            output[2][30] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz;
+            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_wz;
+            output[2][36] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][30] = zz_1_leg3_on_vy;
+            output[1][31] = zz_1_leg3_on_vy;
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = zz_2_leg3_on_vy;
+            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
+            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4);
+            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vy_leg4 * a2_x_leg4);
             // --- leg4
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-            let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[0][45] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx;
             let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_vx;
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy;
             let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            let qd_3_leg4 = wz - rate_2_leg4;
-            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[1][50] = zz_2_leg4_on_vy;
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][61] = -minus_mx_platform_on_vx;
+            output[1][62] = -minus_mx_platform_on_vx;
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            ::core::result::Result::Ok([
-                [
-                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                    zz_2_leg1_on_vx,
-                    inv_l_ab_a_end_x_leg1
-                        - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                    g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * a2_x_leg1,
-                    L_AB_SQUARED * zz_1_leg1_on_vx,
-                    minus_gq2_vx_leg1 * minus_qd_2_leg1,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    -minus_gq2_vx_leg1,
-                    minus_g2_vx_leg1 * qd_3_leg1,
-                    ::overact::math::wide::signed(minus_g2_vx_leg1, qd_3_leg1),
-                    minus_g2_vx_leg1,
-                    zz_1_leg2_on_vx,
-                    zz_1_leg2_on_vx,
-                    minus_g1_vx_leg2 * minus_rate_1_leg2,
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_leg2,
-                        minus_rate_1_leg2,
-                    ),
-                    -minus_g1_vx_leg2,
-                    zz_2_leg2_on_vx,
-                    inv_l_ab_a_end_x_leg1
-                        - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
-                    -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
-                        + g2_vx_leg2 * a2_x_leg2),
-                    L_AB_SQUARED * zz_1_leg2_on_vx,
-                    gq2_vx_leg2 * qd_2_leg2,
-                    ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2),
-                    gq2_vx_leg2,
-                    -(g2_vx_leg2 * qd_3_leg2),
-                    -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2),
-                    -g2_vx_leg2,
-                    zz_1_leg3_on_vx,
-                    zz_1_leg3_on_vx,
-                    g1_vx_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    g1_vx_leg3,
-                    zz_2_leg3_on_vx,
-                    inv_l_ab_a_end_x_leg3
-                        - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                    g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_vx_leg3 * a2_x_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_vx,
-                    minus_gq2_vx_leg3 * minus_qd_2_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_vx_leg3,
-                    minus_g2_vx_leg3 * qd_3_leg3,
-                    ::overact::math::wide::signed(minus_g2_vx_leg3, qd_3_leg3),
-                    minus_g2_vx_leg3,
-                    zz_1_leg4_on_vx,
-                    zz_1_leg4_on_vx,
-                    minus_g1_vx_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_vx_leg4,
-                    zz_2_leg4_on_vx,
-                    inv_l_ab_a_end_x_leg3
-                        - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
-                    -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_vx_leg4 * a2_x_leg4),
-                    L_AB_SQUARED * zz_1_leg4_on_vx,
-                    gq2_vx_leg4 * qd_2_leg4,
-                    ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4),
-                    gq2_vx_leg4,
-                    -(g2_vx_leg4 * qd_3_leg4),
-                    -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4),
-                    -g2_vx_leg4,
-                    0.0,
-                    -minus_mx_platform_on_vx,
-                    my_platform_on_vx,
-                    dvx,
-                ],
-                [
-                    zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                    zz_2_leg1_on_vy,
-                    inv_l_ab_a_end_y_leg1
-                        - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
-                    g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
-                        + minus_g2_vy_leg1 * a2_x_leg1,
-                    L_AB_SQUARED * zz_1_leg1_on_vy,
-                    minus_gq2_vy_leg1 * minus_qd_2_leg1,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    -minus_gq2_vy_leg1,
-                    minus_g2_vy_leg1 * qd_3_leg1,
-                    ::overact::math::wide::signed(minus_g2_vy_leg1, qd_3_leg1),
-                    minus_g2_vy_leg1,
-                    zz_1_leg2_on_vy,
-                    zz_1_leg2_on_vy,
-                    minus_g1_vy_leg2 * minus_rate_1_leg2,
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_leg2,
-                        minus_rate_1_leg2,
-                    ),
-                    -minus_g1_vy_leg2,
-                    zz_2_leg2_on_vy,
-                    inv_l_ab_a_end_y_leg1
-                        - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
-                    -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
-                        + g2_vy_leg2 * a2_x_leg2),
-                    L_AB_SQUARED * zz_1_leg2_on_vy,
-                    gq2_vy_leg2 * qd_2_leg2,
-                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2),
-                    gq2_vy_leg2,
-                    -(g2_vy_leg2 * qd_3_leg2),
-                    -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2),
-                    -g2_vy_leg2,
-                    zz_1_leg3_on_vy,
-                    zz_1_leg3_on_vy,
-                    g1_vy_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3),
-                    g1_vy_leg3,
-                    zz_2_leg3_on_vy,
-                    inv_l_ab_a_end_y_leg3
-                        - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
-                    g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_vy_leg3 * a2_x_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_vy,
-                    minus_gq2_vy_leg3 * minus_qd_2_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_vy_leg3,
-                    minus_g2_vy_leg3 * qd_3_leg3,
-                    ::overact::math::wide::signed(minus_g2_vy_leg3, qd_3_leg3),
-                    minus_g2_vy_leg3,
-                    zz_1_leg4_on_vy,
-                    zz_1_leg4_on_vy,
-                    minus_g1_vy_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_vy_leg4,
-                    zz_2_leg4_on_vy,
-                    inv_l_ab_a_end_y_leg3
-                        - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
-                    -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_vy_leg4 * a2_x_leg4),
-                    L_AB_SQUARED * zz_1_leg4_on_vy,
-                    gq2_vy_leg4 * qd_2_leg4,
-                    ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4),
-                    gq2_vy_leg4,
-                    -(g2_vy_leg4 * qd_3_leg4),
-                    -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4),
-                    -g2_vy_leg4,
-                    0.0,
-                    -my_platform_on_vx,
-                    -minus_mx_platform_on_vx,
-                    dvy,
-                ],
-                [
-                    -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz,
-                    -(minus_g1_wz_leg1 * rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_wz_leg1, rate_1_leg1),
-                    -minus_g1_wz_leg1, -minus_zz_2_leg1_on_wz,
-                    r_p_per_l_ab_a3_x_leg1
-                        + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
-                    -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-                        + g2_wz_leg1 * a2_x_leg1),
-                    -(L_AB_SQUARED * minus_zz_1_leg1_on_wz),
-                    -(gq2_wz_leg1 * minus_qd_2_leg1),
-                    -::overact::math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                    gq2_wz_leg1,
-                    gq3_wz_leg1 * qd_3_leg1,
-                    ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1),
-                    gq3_wz_leg1,
-                    -minus_zz_1_leg2_on_wz,
-                    -minus_zz_1_leg2_on_wz,
-                    -(g1_wz_leg2 * minus_rate_1_leg2),
-                    -::overact::math::wide::signed(g1_wz_leg2, minus_rate_1_leg2),
-                    g1_wz_leg2,
-                    -minus_zz_2_leg2_on_wz,
-                    r_p_per_l_ab_a3_x_leg1
-                        + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
-                    g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
-                        + minus_g2_wz_leg2 * a2_x_leg2,
-                    -(L_AB_SQUARED * minus_zz_1_leg2_on_wz),
-                    -(minus_gq2_wz_leg2 * qd_2_leg2),
-                    -::overact::math::wide::signed(minus_gq2_wz_leg2, qd_2_leg2),
-                    -minus_gq2_wz_leg2,
-                    gq3_wz_leg2 * qd_3_leg2,
-                    ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2),
-                    gq3_wz_leg2,
-                    zz_1_leg3_on_wz,
-                    zz_1_leg3_on_wz,
-                    g1_wz_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3),
-                    g1_wz_leg3,
-                    zz_2_leg3_on_wz,
-                    r_p_per_l_ab_a3_x_leg3
-                        - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
-                    g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_wz_leg3 * a2_x_leg3,
-                    L_AB_SQUARED * zz_1_leg3_on_wz,
-                    minus_gq2_wz_leg3 * minus_qd_2_leg3,
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_gq2_wz_leg3,
-                    gq3_wz_leg3 * qd_3_leg3,
-                    ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3),
-                    gq3_wz_leg3,
-                    zz_1_leg4_on_wz,
-                    zz_1_leg4_on_wz,
-                    minus_g1_wz_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(
-                        minus_g1_wz_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_wz_leg4,
-                    zz_2_leg4_on_wz,
-                    r_p_per_l_ab_a3_x_leg3
-                        - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
-                    -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_wz_leg4 * a2_x_leg4),
-                    L_AB_SQUARED * zz_1_leg4_on_wz,
-                    gq2_wz_leg4 * qd_2_leg4,
-                    ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4),
-                    gq2_wz_leg4,
-                    gq3_wz_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4),
-                    gq3_wz_leg4,
-                    dwz,
-                    a_y_platform,
-                    -a_x_platform,
-                    0.0,
-                ],
-            ])
+            output[0][62] = my_platform_on_vx;
+            output[1][61] = -my_platform_on_vx;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -4006,10 +4210,27 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -4026,6 +4247,19 @@ impl DualV {
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][4] = 1.0;
+            output[0][15..20].fill(0.0);
+            output[0][23] = 0.0;
+            output[0][30..35].fill(0.0);
+            output[0][38] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][19] = 1.0;
+            output[1][30..35].fill(0.0);
+            output[1][38] = 0.0;
+            output[2][0..12].fill(0.0);
+            output[2][15..27].fill(0.0);
+            output[2][34] = 1.0;
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -4045,30 +4279,17 @@ impl DualV {
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
             let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
-            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-                + minus_g2_vy_leg1 * v_end_y_leg1;
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
-                + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
-            let rate_dot_1_leg1 = k1_leg1
-                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -4085,8 +4306,43 @@ impl DualV {
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[1][17] = -minus_rate_1_leg2;
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            // --- leg1
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+            let rate_dot_1_leg1 = k1_leg1
+                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            output[0][0] = rate_dot_1_leg1;
+            output[0][1] = rate_dot_1_leg1;
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            // --- leg2
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
+            let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+            let minus_rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+            output[1][15] = -minus_rate_dot_1_leg2;
+            output[1][16] = -minus_rate_dot_1_leg2;
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -4107,6 +4363,13 @@ impl DualV {
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][32] = rate_1_leg3;
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
@@ -4127,6 +4390,7 @@ impl DualV {
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
@@ -4134,124 +4398,237 @@ impl DualV {
                 * half_per_det_ja;
             let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
                 * half_per_det_ja;
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            // --- platform
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
-            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
-            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
-            let m_platform_on_q1_leg2 = vx_by_a2 * acceleration[0]
-                - minus_vy_by_a2 * acceleration[1];
-            let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t4_platform = R_P_SQUARED_PER_L_AB
-                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
-                    + t3_platform);
-            // --- leg1
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            let wz_by_a3 = t1 * half_per_det_ja;
-            // --- leg2
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
-            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-                + minus_g1_vy_leg2 * v_end_y_leg1;
-            let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-            let minus_rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_wz_leg2 * wz_by_a1;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
             let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
+            output[1][20] = zz_2_leg2_on_q1_leg2;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
+            output[1][11] = g2_a2_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][26] = g2_a1_leg2;
+            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_q1_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][14] = wz_by_a3;
+            output[2][29] = wz_by_a3;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            output[1][10] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+            output[1][14] = -minus_off_3_leg1_on_q1_leg2;
+            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
+            output[2][12] = wz_by_a3 * qd_3_leg1;
+            output[1][13] = -::overact::math::wide::signed(
+                minus_off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[0][24] = g2_a1_leg2 * qd_2_leg2;
+            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+            output[0][29] = off_3_leg2_on_q1_leg1;
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
+            output[2][27] = wz_by_a3 * qd_3_leg2;
+            output[0][28] = ::overact::math::wide::signed(
+                off_3_leg2_on_q1_leg1,
+                qd_3_leg2,
+            );
+            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][11] = off_2_leg1_on_q1_leg1;
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][10] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][14] = off_3_leg1_on_q1_leg1;
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][13] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][26] = off_2_leg2_on_q1_leg2;
+            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
+            output[1][25] = ::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                qd_2_leg2,
+            );
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+            output[1][29] = -minus_off_3_leg2_on_q1_leg2;
+            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2);
+            output[1][28] = -::overact::math::wide::signed(
+                minus_off_3_leg2_on_q1_leg2,
+                qd_3_leg2,
+            );
+            // --- platform
+            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+            output[0][60] = zz_platform_on_q1_leg1;
+            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
+            output[1][60] = -minus_zz_platform_on_q1_leg2;
+            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+            output[2][60] = zz_platform_on_q1_leg3;
+            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[0][63] = m_platform_on_q1_leg1;
+            let m_platform_on_q1_leg2 = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * acceleration[1];
+            output[1][63] = m_platform_on_q1_leg2;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+                + wz_by_a3_a_x_platform;
+            output[2][62] = -minus_my_platform_on_q1_leg3;
+            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            output[2][61] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+            let t2_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
+                    + t1_platform);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][21] = t2_platform - L_AB * zz_2_leg2_on_q1_leg1;
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
+            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+            let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+            let t4_platform = R_P_SQUARED_PER_L_AB
+                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                    + t3_platform);
+            output[1][21] = t4_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
+            output[1][6] = t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3;
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][41] = g2_a2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[2][30] = rate_dot_1_leg3;
+            output[2][31] = rate_dot_1_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
             let minus_g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * wz_by_a3);
             let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
-            // --- platform
-            let t5_platform = R_P_SQUARED_PER_L_AB
+            output[2][35] = zz_2_leg3_on_q1_leg3;
+            let t5_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+            output[2][36] = t5_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            let t6_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            let t6_platform = R_P_SQUARED_PER_L_AB
+            output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
+            let t7_platform = R_P_SQUARED_PER_L_AB
                 * (t3_platform
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
-            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
-                + wz_by_a3_a_x_platform;
-            let t7_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            // --- leg3
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
+            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[0][40] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][40] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            );
+            output[1][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            );
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
+            output[2][40] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][44] = off_3_leg3_on_q1_leg3;
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
+            output[2][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg3,
+                qd_3_leg3,
+            );
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -4277,6 +4654,7 @@ impl DualV {
                 + p_y_leg1 * minus_g1_vx_leg4;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][49] = g1_a1_leg4;
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
@@ -4290,12 +4668,8 @@ impl DualV {
             let minus_rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
             let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
                 + g2_wz_leg4 * wz_by_a1;
@@ -4304,215 +4678,105 @@ impl DualV {
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_q1_leg1;
+            output[0][51] = t6_platform
+                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][49] = g1_a2_leg4;
+            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2;
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2;
             let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
                 - g2_wz_leg4 * minus_wz_by_a2;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_q1_leg2;
+            output[1][51] = t7_platform
+                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1);
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2);
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4);
+            output[0][48] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][48] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
+            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+            output[2][52] = -(7.142857142857143
+                * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+            output[2][49] = -minus_g1_a3_leg4;
+            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3;
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
             let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_q1_leg3;
+            output[2][51] = t5_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4;
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4;
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[0][56] = off_2_leg4_on_q1_leg1;
+            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+            output[0][59] = off_3_leg4_on_q1_leg1;
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][56] = off_2_leg4_on_q1_leg2;
+            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
             let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
+            output[1][59] = -minus_off_3_leg4_on_q1_leg2;
+            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2);
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][56] = off_2_leg4_on_q1_leg3;
+            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            ::core::result::Result::Ok([
-                [
-                    rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    t2_platform
-                        - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
-                    INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
-                    L_AB_SQUARED * rate_dot_1_leg1,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    off_2_leg1_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    off_3_leg1_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    zz_2_leg2_on_q1_leg1,
-                    t2_platform - L_AB * zz_2_leg2_on_q1_leg1,
-                    -(g2_a1_leg2 * a2_x_leg2),
-                    0.0,
-                    g2_a1_leg2 * qd_2_leg2,
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    g2_a1_leg2,
-                    qd_3_leg2 * off_3_leg2_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2),
-                    off_3_leg2_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg1,
-                    t5_platform + L_AB * minus_zz_2_leg3_on_q1_leg1,
-                    -(g2_a1_leg3 * a2_x_leg3),
-                    0.0,
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    g2_a1_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3),
-                    off_3_leg3_on_q1_leg1,
-                    -minus_zz_1_leg4_on_q1_leg1,
-                    -minus_zz_1_leg4_on_q1_leg1,
-                    -(g1_a1_leg4 * minus_rate_1_leg4),
-                    -::overact::math::wide::signed(g1_a1_leg4, minus_rate_1_leg4),
-                    g1_a1_leg4,
-                    zz_2_leg4_on_q1_leg1,
-                    t5_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1),
-                    g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
-                    -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg1,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4),
-                    off_3_leg4_on_q1_leg1,
-                    zz_platform_on_q1_leg1,
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    my_platform_on_q1_leg1,
-                    m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2, -(g2_a2_leg1 * a2_x_leg1), 0.0,
-                    -(g2_a2_leg1 * minus_qd_2_leg1),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
-                    -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg1_on_q1_leg2,
-                        qd_3_leg1,
-                    ),
-                    -minus_off_3_leg1_on_q1_leg2,
-                    -minus_rate_dot_1_leg2,
-                    -minus_rate_dot_1_leg2,
-                    -minus_rate_1_leg2,
-                    -::overact::math::wide::sign(minus_rate_1_leg2),
-                    1.0,
-                    zz_2_leg2_on_q1_leg2,
-                    t4_platform
-                        - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2),
-                    INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
-                    -(L_AB_SQUARED * minus_rate_dot_1_leg2),
-                    qd_2_leg2 * off_2_leg2_on_q1_leg2,
-                    ::overact::math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
-                    off_2_leg2_on_q1_leg2,
-                    -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg2_on_q1_leg2,
-                        qd_3_leg2,
-                    ),
-                    -minus_off_3_leg2_on_q1_leg2,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg2,
-                    t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg2,
-                    -(g2_a2_leg3 * a2_x_leg3),
-                    0.0,
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    g2_a2_leg3,
-                    -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg3_on_q1_leg2,
-                        qd_3_leg3,
-                    ),
-                    -minus_off_3_leg3_on_q1_leg2,
-                    -minus_zz_1_leg4_on_q1_leg2,
-                    -minus_zz_1_leg4_on_q1_leg2,
-                    -(g1_a2_leg4 * minus_rate_1_leg4),
-                    -::overact::math::wide::signed(g1_a2_leg4, minus_rate_1_leg4),
-                    g1_a2_leg4,
-                    zz_2_leg4_on_q1_leg2,
-                    t6_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2),
-                    g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
-                    -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg2,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
-                    off_2_leg4_on_q1_leg2,
-                    -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg4_on_q1_leg2,
-                        qd_3_leg4,
-                    ),
-                    -minus_off_3_leg4_on_q1_leg2,
-                    -minus_zz_platform_on_q1_leg2,
-                    minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - minus_wz_by_a2 * a_y_platform,
-                    my_platform_on_q1_leg2,
-                    m_platform_on_q1_leg2,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    wz_by_a3 * qd_3_leg1, ::overact::math::wide::signed(wz_by_a3, qd_3_leg1),
-                    wz_by_a3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    wz_by_a3 * qd_3_leg2, ::overact::math::wide::signed(wz_by_a3, qd_3_leg2),
-                    wz_by_a3, rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg3), 1.0, zz_2_leg3_on_q1_leg3,
-                    t7_platform - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3),
-                    INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
-                    L_AB_SQUARED * rate_dot_1_leg3, minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
-                    ::overact::math::wide::signed(
-                        minus_off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_off_2_leg3_on_q1_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg3,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg3, qd_3_leg3),
-                    off_3_leg3_on_q1_leg3,
-                    zz_1_leg4_on_q1_leg3,
-                    zz_1_leg4_on_q1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(
-                        minus_g1_a3_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_a3_leg4,
-                    zz_2_leg4_on_q1_leg3,
-                    t7_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3),
-                    -(7.142857142857143
-                        * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                            + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
-                    L_AB_SQUARED * zz_1_leg4_on_q1_leg3,
-                    qd_2_leg4 * off_2_leg4_on_q1_leg3,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
-                    off_2_leg4_on_q1_leg3,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg3,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg3, qd_3_leg4),
-                    off_3_leg4_on_q1_leg3,
-                    zz_platform_on_q1_leg3,
-                    wz_by_a3 * a_y_platform
-                        - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                            + vx_by_a3 * inv_r_p_a_arm_y_leg3),
-                    -minus_my_platform_on_q1_leg3,
-                    R_P * wz_by_a3_a_x_platform,
-                ],
-            ])
+            output[2][59] = off_3_leg4_on_q1_leg3;
+            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3;
+            output[0][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            );
+            output[1][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            );
+            output[2][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            );
+            output[0][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg1,
+                qd_3_leg4,
+            );
+            output[1][58] = -::overact::math::wide::signed(
+                minus_off_3_leg4_on_q1_leg2,
+                qd_3_leg4,
+            );
+            output[2][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg3,
+                qd_3_leg4,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -4536,13 +4800,32 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_joints_into(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -4557,6 +4840,19 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// r_p² / l_ab
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            output[0][4] = 1.0;
+            output[0][15..20].fill(0.0);
+            output[0][23] = 0.0;
+            output[0][30..35].fill(0.0);
+            output[0][38] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][19] = 1.0;
+            output[1][30..35].fill(0.0);
+            output[1][38] = 0.0;
+            output[2][0..12].fill(0.0);
+            output[2][15..27].fill(0.0);
+            output[2][34] = 1.0;
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi),
             (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
@@ -4575,40 +4871,67 @@ impl DualV {
             let p_x_leg3 = R_P * s_phi;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let p_y_leg1 = R_P * c_phi;
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let g1_vx_leg1 = c12_leg1 * k1_leg1;
+            let g1_vy_leg1 = s12_leg1 * k1_leg1;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-            let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
                 + s12_leg1 * a_end_y_leg1 + L_AB * rate_2_squared_leg1;
-            let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let v2_by_1_y_leg1 = L_AB * c2_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][0] = rate_dot_1_leg1;
+            output[0][1] = rate_dot_1_leg1;
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let k1_leg2 = INV_L_AB / s2_leg2;
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            output[1][17] = rate_1_leg2;
+            output[1][18] = ::overact::math::wide::sign(rate_1_leg2);
+            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+                + minus_g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
+                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = L_AB * c2_leg2;
+            let rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][15] = rate_dot_1_leg2;
+            output[1][16] = rate_dot_1_leg2;
+            output[1][23] = L_AB_SQUARED * rate_dot_1_leg2;
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let k1_leg3 = INV_L_AB / s2_leg3;
             let g1_vy_leg3 = s12_leg3 * k1_leg3;
             let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][32] = rate_1_leg3;
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
@@ -4636,122 +4959,245 @@ impl DualV {
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
+                * inv_det_ja;
+            output[2][14] = -minus_wz_by_a3;
+            output[2][29] = -minus_wz_by_a3;
             let minus_vx_by_a2 = t2 * inv_det_ja;
             let vy_by_a2 = t1 * inv_det_ja;
             let wz_by_a2 = t3 * inv_det_ja;
-            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
-                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            // --- platform
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
-            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
-            let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
-            let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
-            let m_platform_on_q1_leg2 = vy_by_a2 * acceleration[1]
-                - minus_vx_by_a2 * acceleration[0];
-            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t5_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
-            // --- leg1
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
-            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
-                * inv_det_ja;
-            // --- leg2
-            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
-            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
-                + minus_g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
-                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            let v2_by_1_y_leg2 = L_AB * c2_leg2;
-            let rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
-            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + L_AB * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][20] = -minus_zz_2_leg2_on_q1_leg2;
+            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
+                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
+            output[1][11] = g2_a2_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
+            output[0][26] = g2_a1_leg2;
+            let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][20] = -minus_zz_2_leg2_on_q1_leg1;
+            output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
+            output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
+            output[1][22] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
+            output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            output[1][10] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
+            output[1][14] = off_3_leg1_on_q1_leg2;
+            output[1][12] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
+            output[2][12] = -(minus_wz_by_a3 * qd_3_leg1);
+            output[1][13] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][13] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg1,
+            );
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2);
+            output[0][25] = -::overact::math::wide::signed(
+                g2_a1_leg2,
+                minus_qd_2_leg2,
+            );
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+            output[0][29] = off_3_leg2_on_q1_leg1;
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
+            output[2][27] = -(minus_wz_by_a3 * qd_3_leg2);
+            output[0][28] = ::overact::math::wide::signed(
+                off_3_leg2_on_q1_leg1,
+                qd_3_leg2,
+            );
+            output[2][28] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg2,
+            );
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][11] = off_2_leg1_on_q1_leg1;
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][10] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][14] = off_3_leg1_on_q1_leg1;
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][13] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][26] = off_2_leg2_on_q1_leg2;
+            output[1][24] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2);
+            output[1][25] = -::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                minus_qd_2_leg2,
+            );
             let off_3_leg2_on_q1_leg2 = wz_by_a2 - g2_a2_leg2;
+            output[1][29] = off_3_leg2_on_q1_leg2;
+            output[1][27] = qd_3_leg2 * off_3_leg2_on_q1_leg2;
+            output[1][28] = ::overact::math::wide::signed(
+                off_3_leg2_on_q1_leg2,
+                qd_3_leg2,
+            );
+            // --- platform
+            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+            output[0][60] = zz_platform_on_q1_leg1;
+            let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
+            output[1][60] = zz_platform_on_q1_leg2;
+            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
+            output[2][60] = -minus_zz_platform_on_q1_leg3;
+            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[0][63] = m_platform_on_q1_leg1;
+            let m_platform_on_q1_leg2 = vy_by_a2 * acceleration[1]
+                - minus_vx_by_a2 * acceleration[0];
+            output[1][63] = m_platform_on_q1_leg2;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
+            let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
+                + minus_wz_by_a3_a_x_platform;
+            output[2][62] = my_platform_on_q1_leg3;
+            output[2][63] = -(R_P * minus_wz_by_a3_a_x_platform);
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
+            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
+            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
+            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+                + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
+                - minus_wz_by_a3 * a_y_platform;
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+            let t2_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
+                    + t1_platform);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][21] = t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1;
+            let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
+            output[1][62] = -minus_my_platform_on_q1_leg2;
+            let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
+            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+            let t5_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
+            output[1][21] = t5_platform
+                - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2);
+            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + L_AB * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            output[2][30] = rate_dot_1_leg3;
+            output[2][31] = rate_dot_1_leg3;
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
-                - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
             let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
             let minus_zz_2_leg3_on_q1_leg3 = g2_a3_leg3 * minus_rate_dot_2_leg3;
-            // --- platform
-            let t6_platform = R_P_SQUARED_PER_L_AB
+            output[2][35] = -minus_zz_2_leg3_on_q1_leg3;
+            let t6_platform = 0.7857142857142857 * my_platform_on_q1_leg3;
+            output[2][36] = -(t6_platform
+                + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3));
+            output[2][37] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3;
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3;
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            let t7_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            let t7_platform = R_P_SQUARED_PER_L_AB
+            output[0][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
+            output[1][41] = g2_a2_leg3;
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
+            let t8_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg2 + t3_platform + t4_platform);
-            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
-            let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
-            let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
-                + minus_wz_by_a3_a_x_platform;
-            let t8_platform = 0.7857142857142857 * my_platform_on_q1_leg3;
-            // --- leg3
+            output[1][36] = t8_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
+            output[0][37] = -(g2_a1_leg3 * minus_a_on_f1_leg3);
+            output[1][37] = -(g2_a2_leg3 * minus_a_on_f1_leg3);
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[0][40] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][40] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
             let off_3_leg3_on_q1_leg2 = wz_by_a2 - g2_a2_leg3;
+            output[1][44] = off_3_leg3_on_q1_leg2;
+            output[1][42] = qd_3_leg3 * off_3_leg3_on_q1_leg2;
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            );
+            output[1][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            );
+            let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+            output[2][41] = off_2_leg3_on_q1_leg3;
+            output[2][39] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3);
+            output[2][40] = -::overact::math::wide::signed(
+                off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
             let minus_off_3_leg3_on_q1_leg3 = g2_a3_leg3 + minus_wz_by_a3;
+            output[2][44] = -minus_off_3_leg3_on_q1_leg3;
+            output[2][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3);
+            output[2][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg3,
+                qd_3_leg3,
+            );
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
@@ -4761,6 +5207,7 @@ impl DualV {
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
             let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
                 + g1_wz_leg4 * wz_by_a1;
+            output[0][49] = g1_a1_leg4;
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -4774,11 +5221,8 @@ impl DualV {
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
             let zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * rate_dot_1_leg4;
-            let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
-                + g1_wz_leg4 * wz_by_a2;
-            let zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * rate_dot_1_leg4;
-            let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
-            let minus_zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * rate_dot_1_leg4;
+            output[0][45] = zz_1_leg4_on_q1_leg1;
+            output[0][46] = zz_1_leg4_on_q1_leg1;
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
             let g2_a1_leg4 = minus_g2_vy_leg4 * minus_vy_by_a1
@@ -4788,214 +5232,94 @@ impl DualV {
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
             let minus_zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * minus_rate_dot_2_leg4;
+            output[0][50] = -minus_zz_2_leg4_on_q1_leg1;
+            output[0][51] = t7_platform
+                - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1);
+            let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
+                + g1_wz_leg4 * wz_by_a2;
+            output[1][49] = g1_a2_leg4;
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
-            let minus_zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * minus_rate_dot_2_leg4;
+            output[1][52] = g1_a2_leg4 * a_on_f2_leg4
+                - g2_a2_leg4 * minus_a_on_f1_leg4;
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg1;
+            output[0][47] = g1_a1_leg4 * rate_1_leg4;
+            output[1][47] = g1_a2_leg4 * rate_1_leg4;
+            let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
+            output[2][49] = -minus_g1_a3_leg4;
+            output[2][47] = -(minus_g1_a3_leg4 * rate_1_leg4);
+            output[0][48] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4);
+            output[1][48] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4);
+            output[2][48] = -::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                rate_1_leg4,
+            );
+            output[0][52] = g1_a1_leg4 * a_on_f2_leg4
+                - g2_a1_leg4 * minus_a_on_f1_leg4;
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            let minus_zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * minus_rate_dot_2_leg4;
+            output[2][52] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+                + g2_a3_leg4 * minus_a_on_f1_leg4);
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[0][56] = off_2_leg4_on_q1_leg1;
+            output[0][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1);
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+            output[0][59] = off_3_leg4_on_q1_leg1;
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
+            output[0][55] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                minus_qd_2_leg4,
+            );
             let off_3_leg4_on_q1_leg2 = wz_by_a2 - g2_a2_leg4;
+            output[1][59] = off_3_leg4_on_q1_leg2;
+            output[1][57] = qd_3_leg4 * off_3_leg4_on_q1_leg2;
             let minus_off_3_leg4_on_q1_leg3 = g2_a3_leg4 + minus_wz_by_a3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
-            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            ::core::result::Result::Ok([
-                [
-                    rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    t2_platform
-                        - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
-                    a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1,
-                    L_AB_SQUARED * rate_dot_1_leg1,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    off_2_leg1_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    off_3_leg1_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg2_on_q1_leg1,
-                    t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1,
-                    -(g2_a1_leg2 * minus_a_on_f1_leg2),
-                    0.0,
-                    -(g2_a1_leg2 * minus_qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a1_leg2, minus_qd_2_leg2),
-                    g2_a1_leg2,
-                    qd_3_leg2 * off_3_leg2_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2),
-                    off_3_leg2_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg1,
-                    t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1,
-                    -(g2_a1_leg3 * minus_a_on_f1_leg3),
-                    0.0,
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    g2_a1_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3),
-                    off_3_leg3_on_q1_leg1,
-                    zz_1_leg4_on_q1_leg1,
-                    zz_1_leg4_on_q1_leg1,
-                    g1_a1_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4),
-                    g1_a1_leg4,
-                    -minus_zz_2_leg4_on_q1_leg1,
-                    t6_platform
-                        - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1),
-                    g1_a1_leg4 * a_on_f2_leg4 - g2_a1_leg4 * minus_a_on_f1_leg4,
-                    L_AB_SQUARED * zz_1_leg4_on_q1_leg1,
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg1,
-                        minus_qd_2_leg4,
-                    ),
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4),
-                    off_3_leg4_on_q1_leg1,
-                    zz_platform_on_q1_leg1,
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    my_platform_on_q1_leg1,
-                    m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2,
-                    -(g2_a2_leg1 * minus_a_on_f1_leg1), 0.0, -(g2_a2_leg1 * minus_qd_2_leg1),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg2,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg2, qd_3_leg1),
-                    off_3_leg1_on_q1_leg2, rate_dot_1_leg2, rate_dot_1_leg2, rate_1_leg2,
-                    ::overact::math::wide::sign(rate_1_leg2), 1.0, -minus_zz_2_leg2_on_q1_leg2,
-                    t5_platform
-                        - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2),
-                    a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2,
-                    L_AB_SQUARED * rate_dot_1_leg2,
-                    -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        off_2_leg2_on_q1_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    off_2_leg2_on_q1_leg2,
-                    qd_3_leg2 * off_3_leg2_on_q1_leg2,
-                    ::overact::math::wide::signed(off_3_leg2_on_q1_leg2, qd_3_leg2),
-                    off_3_leg2_on_q1_leg2,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg2,
-                    t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2,
-                    -(g2_a2_leg3 * minus_a_on_f1_leg3),
-                    0.0,
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    g2_a2_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg2,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg2, qd_3_leg3),
-                    off_3_leg3_on_q1_leg2,
-                    zz_1_leg4_on_q1_leg2,
-                    zz_1_leg4_on_q1_leg2,
-                    g1_a2_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4),
-                    g1_a2_leg4,
-                    -minus_zz_2_leg4_on_q1_leg2,
-                    t7_platform
-                        - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2),
-                    g1_a2_leg4 * a_on_f2_leg4 - g2_a2_leg4 * minus_a_on_f1_leg4,
-                    L_AB_SQUARED * zz_1_leg4_on_q1_leg2,
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg2,
-                        minus_qd_2_leg4,
-                    ),
-                    off_2_leg4_on_q1_leg2,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg2,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg2, qd_3_leg4),
-                    off_3_leg4_on_q1_leg2,
-                    zz_platform_on_q1_leg2,
-                    minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform,
-                    -minus_my_platform_on_q1_leg2,
-                    m_platform_on_q1_leg2,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    -(minus_wz_by_a3 * qd_3_leg1),
-                    -::overact::math::wide::signed(minus_wz_by_a3, qd_3_leg1), -minus_wz_by_a3, 0.0,
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    -(minus_wz_by_a3 * qd_3_leg2),
-                    -::overact::math::wide::signed(minus_wz_by_a3, qd_3_leg2), -minus_wz_by_a3,
-                    rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg3), 1.0, -minus_zz_2_leg3_on_q1_leg3,
-                    -(t8_platform
-                        + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3)),
-                    a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3,
-                    L_AB_SQUARED * rate_dot_1_leg3,
-                    -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3),
-                    -::overact::math::wide::signed(
-                        off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    off_2_leg3_on_q1_leg3,
-                    -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg3_on_q1_leg3,
-                        qd_3_leg3,
-                    ),
-                    -minus_off_3_leg3_on_q1_leg3,
-                    -minus_zz_1_leg4_on_q1_leg3,
-                    -minus_zz_1_leg4_on_q1_leg3,
-                    -(minus_g1_a3_leg4 * rate_1_leg4),
-                    -::overact::math::wide::signed(minus_g1_a3_leg4, rate_1_leg4),
-                    -minus_g1_a3_leg4,
-                    -minus_zz_2_leg4_on_q1_leg3,
-                    -(t8_platform
-                        - L_AB
-                            * (minus_zz_1_leg4_on_q1_leg3
-                                + minus_zz_2_leg4_on_q1_leg3)),
-                    -(minus_g1_a3_leg4 * a_on_f2_leg4
-                        + g2_a3_leg4 * minus_a_on_f1_leg4),
-                    -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3),
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg3,
-                        minus_qd_2_leg4,
-                    ),
-                    off_2_leg4_on_q1_leg3,
-                    -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg4_on_q1_leg3,
-                        qd_3_leg4,
-                    ),
-                    -minus_off_3_leg4_on_q1_leg3,
-                    -minus_zz_platform_on_q1_leg3,
-                    minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
-                        + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
-                        - minus_wz_by_a3 * a_y_platform,
-                    my_platform_on_q1_leg3,
-                    -(R_P * minus_wz_by_a3_a_x_platform),
-                ],
-            ])
+            output[2][59] = -minus_off_3_leg4_on_q1_leg3;
+            output[2][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3);
+            output[0][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg1,
+                qd_3_leg4,
+            );
+            output[1][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg2,
+                qd_3_leg4,
+            );
+            output[2][58] = -::overact::math::wide::signed(
+                minus_off_3_leg4_on_q1_leg3,
+                qd_3_leg4,
+            );
+            let zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_q1_leg2;
+            output[1][46] = zz_1_leg4_on_q1_leg2;
+            let minus_zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * rate_dot_1_leg4;
+            output[2][45] = -minus_zz_1_leg4_on_q1_leg3;
+            output[2][46] = -minus_zz_1_leg4_on_q1_leg3;
+            let minus_zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * minus_rate_dot_2_leg4;
+            output[1][50] = -minus_zz_2_leg4_on_q1_leg2;
+            output[1][51] = t8_platform
+                - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2);
+            let minus_zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * minus_rate_dot_2_leg4;
+            output[2][50] = -minus_zz_2_leg4_on_q1_leg3;
+            output[2][51] = -(t6_platform
+                - L_AB * (minus_zz_1_leg4_on_q1_leg3 + minus_zz_2_leg4_on_q1_leg3));
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg2;
+            output[2][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3);
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][56] = off_2_leg4_on_q1_leg2;
+            output[1][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2);
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][56] = off_2_leg4_on_q1_leg3;
+            output[2][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3);
+            output[1][55] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                minus_qd_2_leg4,
+            );
+            output[2][55] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                minus_qd_2_leg4,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -5020,6 +5344,25 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_actuators_into(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 64]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -5027,7 +5370,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -5044,6 +5387,19 @@ impl DualV {
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][4] = 1.0;
+            output[0][15..20].fill(0.0);
+            output[0][23] = 0.0;
+            output[0][30..35].fill(0.0);
+            output[0][38] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][19] = 1.0;
+            output[1][30..35].fill(0.0);
+            output[1][38] = 0.0;
+            output[2][0..12].fill(0.0);
+            output[2][15..27].fill(0.0);
+            output[2][34] = 1.0;
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -5092,6 +5448,91 @@ impl DualV {
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            // --- leg1
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            // --- leg3
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+            let det_ja = g1_wz_leg3 * t1;
+            let half_per_det_ja = 0.5 / det_ja;
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][14] = wz_by_a3;
+            output[2][29] = wz_by_a3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
+            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][44] = off_3_leg3_on_q1_leg3;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
+                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+                * half_per_det_ja;
+            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
+                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
+            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3;
+            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
+                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+                * half_per_det_ja;
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][41] = g2_a2_leg3;
+            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
+            output[1][11] = g2_a2_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][11] = off_2_leg1_on_q1_leg1;
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][14] = off_3_leg1_on_q1_leg1;
+            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+            output[1][14] = -minus_off_3_leg1_on_q1_leg2;
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][26] = g2_a1_leg2;
+            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+                + minus_g2_wz_leg2 * minus_wz_by_a2;
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][26] = off_2_leg2_on_q1_leg2;
+            let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+            output[0][29] = off_3_leg2_on_q1_leg1;
+            let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+            output[1][29] = -minus_off_3_leg2_on_q1_leg2;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -5103,35 +5544,56 @@ impl DualV {
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::platform(
+                det_ja,
+                3.5376915986291904,
+                ::overact::ActuatorGroup::Kept,
+            )?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            let inv_pivot_1 = 1.0 / s_1_1;
-            // --- leg1
-            let half_d_y_leg1 = 0.5 * d_y_leg1;
-            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            // --- leg2
-            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            // --- leg3
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            // --- leg4
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
                 + p_y_leg1 * minus_g1_vx_leg4;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][49] = g1_a1_leg4;
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][49] = g1_a2_leg4;
+            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+            output[2][49] = -minus_g1_a3_leg4;
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+                + g2_wz_leg4 * wz_by_a1;
+            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+            output[0][56] = off_2_leg4_on_q1_leg1;
+            let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+            output[0][59] = off_3_leg4_on_q1_leg1;
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][56] = off_2_leg4_on_q1_leg2;
+            let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
+            output[1][59] = -minus_off_3_leg4_on_q1_leg2;
+            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][56] = off_2_leg4_on_q1_leg3;
+            let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
+            output[2][59] = off_3_leg4_on_q1_leg3;
+            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+            ::overact::guard::platform(
+                s_1_1,
+                25.429161076750646,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
@@ -5148,34 +5610,42 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                25.592368899353342,
+                ::overact::ActuatorGroup::All,
+            )?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
             let inv_pivot_3 = 1.0 / pivot_3;
-            let t1 = g1_vx_leg1 * actuator_velocities[0]
+            let t2 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
                 + g1_vx_leg3 * actuator_velocities[2]
                 - minus_g1_vx_leg4 * actuator_velocities[3];
-            let t2 = g1_vy_leg1 * actuator_velocities[0]
+            let t3 = g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
                 + g1_vy_leg3 * actuator_velocities[2]
-                - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
-            let t3 = g1_wz_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t2;
+            let t4 = g1_wz_leg2 * actuator_velocities[1]
                 - minus_g1_wz_leg1 * actuator_velocities[0]
                 + g1_wz_leg3 * actuator_velocities[2]
-                - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
-                - l_3_2 * t2;
-            let wz = inv_pivot_3 * t3;
+                - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t2
+                - l_3_2 * t3;
+            let wz = inv_pivot_3 * t4;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-            let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
+            let vy = inv_pivot_2 * t3 - l_3_2 * wz;
+            let vx = inv_pivot_1 * t2 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
@@ -5185,6 +5655,7 @@ impl DualV {
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][2] = rate_1_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -5192,8 +5663,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
@@ -5202,6 +5671,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[1][17] = -minus_rate_1_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -5209,9 +5679,7 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
@@ -5221,6 +5689,7 @@ impl DualV {
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][32] = rate_1_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
@@ -5228,8 +5697,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
@@ -5244,400 +5711,317 @@ impl DualV {
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
             let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
                 - bias_rate_dot_1_leg4;
-            let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            let t5 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
                 - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
-            let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            let t6 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
                 - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-                - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
-            let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t5;
+            let t7 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
                 + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-                - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
-                - l_3_2 * t5;
-            let dwz = inv_pivot_3 * t6;
-            let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
-            let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
-            // --- leg1
+                - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t5
+                - l_3_2 * t6;
+            let dwz = inv_pivot_3 * t7;
+            let dvy = inv_pivot_2 * t6 - l_3_2 * dwz;
+            let dvx = inv_pivot_1 * t5 - l_2_1 * dvy - l_3_1 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
-            let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+            let a_end_x_leg3 = dvx - a_arm_x_leg1;
+            let a_end_y_leg3 = dvy + a_arm_y_leg3;
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            output[2][52] = -(7.142857142857143
+                * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+            // --- leg3
+            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
+                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_q1_leg3;
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][30] = rate_dot_1_leg3;
+            output[2][31] = rate_dot_1_leg3;
+            // --- leg1
+            let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            let t7 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-            let det_ja = g1_wz_leg3 * t7;
-            ::overact::guard::platform(
-                det_ja,
-                3.5376915986291904,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
-            ::overact::guard::platform(
-                pivot_2,
-                25.592368899353342,
-                ::overact::ActuatorGroup::All,
-            )?;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3076928490286828,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let half_per_det_ja = 0.5 / det_ja;
-            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
-                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
-                * half_per_det_ja;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
-                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
+            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
-                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
-                * half_per_det_ja;
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            // --- platform
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
-            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
-            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
-            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
-            let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t4_platform = R_P_SQUARED_PER_L_AB
-                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
-                    + t3_platform);
-            // --- leg1
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            let wz_by_a3 = t7 * half_per_det_ja;
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_wz_leg2 * wz_by_a1;
-            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg2;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            output[0][0] = rate_dot_1_leg1;
+            output[0][1] = rate_dot_1_leg1;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
-            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
-                + minus_g2_wz_leg2 * minus_wz_by_a2;
-            // --- leg2
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][20] = zz_2_leg2_on_q1_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[1][15] = -minus_rate_dot_1_leg2;
+            output[1][16] = -minus_rate_dot_1_leg2;
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
+            output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_q1_leg3;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][61] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][10] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            output[1][10] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + wz;
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][13] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
+            output[1][13] = -::overact::math::wide::signed(
+                minus_off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][12] = wz_by_a3 * qd_3_leg1;
+            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_q1_leg1;
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[0][24] = g2_a1_leg2 * qd_2_leg2;
+            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
+            output[1][25] = ::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                qd_2_leg2,
+            );
             let qd_3_leg2 = wz - rate_2_leg2;
-            let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
-            let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            // --- leg3
-            let a_end_x_leg3 = dvx - a_arm_x_leg1;
-            let a_end_y_leg3 = dvy + a_arm_y_leg3;
-            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
-                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
-            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
+            output[0][28] = ::overact::math::wide::signed(
+                off_3_leg2_on_q1_leg1,
+                qd_3_leg2,
+            );
+            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2);
+            output[1][28] = -::overact::math::wide::signed(
+                minus_off_3_leg2_on_q1_leg2,
+                qd_3_leg2,
+            );
+            output[2][27] = wz_by_a3 * qd_3_leg2;
+            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
             // --- platform
-            let t5_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            let t6_platform = R_P_SQUARED_PER_L_AB
-                * (t3_platform
-                    - (minus_zz_platform_on_q1_leg2
-                        + inv_r_p_my_platform_on_q1_leg2));
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
             let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][60] = zz_platform_on_q1_leg3;
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
             let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
                 + wz_by_a3_a_x_platform;
-            let t7_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            // --- leg3
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
-            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            output[2][62] = -minus_my_platform_on_q1_leg3;
+            let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+            output[2][36] = t1_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
             let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
-                + g2_wz_leg4 * wz_by_a1;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
-            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+            output[2][45] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3;
+            output[2][51] = t1_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
+            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            // --- leg3
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
+            output[2][40] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[0][40] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][40] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            );
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
+            output[1][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            );
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
+            output[2][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg3,
+                qd_3_leg3,
+            );
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4);
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4;
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
+            output[0][48] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][48] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
             // --- leg4
-            let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4;
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4;
+            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
+            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2;
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2;
+            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_q1_leg1;
+            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_q1_leg2;
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1);
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2);
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            output[0][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            );
             let qd_3_leg4 = wz - rate_2_leg4;
-            let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
-            let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
-            let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            ::core::result::Result::Ok([
-                [
-                    rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    t2_platform
-                        - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
-                    INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
-                    L_AB_SQUARED * rate_dot_1_leg1,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    off_2_leg1_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    off_3_leg1_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    zz_2_leg2_on_q1_leg1,
-                    t2_platform - L_AB * zz_2_leg2_on_q1_leg1,
-                    -(g2_a1_leg2 * a2_x_leg2),
-                    0.0,
-                    g2_a1_leg2 * qd_2_leg2,
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    g2_a1_leg2,
-                    qd_3_leg2 * off_3_leg2_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2),
-                    off_3_leg2_on_q1_leg1,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg1,
-                    t5_platform + L_AB * minus_zz_2_leg3_on_q1_leg1,
-                    -(g2_a1_leg3 * a2_x_leg3),
-                    0.0,
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    g2_a1_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3),
-                    off_3_leg3_on_q1_leg1,
-                    -minus_zz_1_leg4_on_q1_leg1,
-                    -minus_zz_1_leg4_on_q1_leg1,
-                    -(g1_a1_leg4 * minus_rate_1_leg4),
-                    -::overact::math::wide::signed(g1_a1_leg4, minus_rate_1_leg4),
-                    g1_a1_leg4,
-                    zz_2_leg4_on_q1_leg1,
-                    t5_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1),
-                    g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
-                    -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg1,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg1,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4),
-                    off_3_leg4_on_q1_leg1,
-                    zz_platform_on_q1_leg1,
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    my_platform_on_q1_leg1,
-                    m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2, -(g2_a2_leg1 * a2_x_leg1), 0.0,
-                    -(g2_a2_leg1 * minus_qd_2_leg1),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
-                    -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg1_on_q1_leg2,
-                        qd_3_leg1,
-                    ),
-                    -minus_off_3_leg1_on_q1_leg2,
-                    -minus_rate_dot_1_leg2,
-                    -minus_rate_dot_1_leg2,
-                    -minus_rate_1_leg2,
-                    -::overact::math::wide::sign(minus_rate_1_leg2),
-                    1.0,
-                    zz_2_leg2_on_q1_leg2,
-                    t4_platform
-                        - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2),
-                    INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
-                    -(L_AB_SQUARED * minus_rate_dot_1_leg2),
-                    qd_2_leg2 * off_2_leg2_on_q1_leg2,
-                    ::overact::math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
-                    off_2_leg2_on_q1_leg2,
-                    -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg2_on_q1_leg2,
-                        qd_3_leg2,
-                    ),
-                    -minus_off_3_leg2_on_q1_leg2,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg3_on_q1_leg2,
-                    t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg2,
-                    -(g2_a2_leg3 * a2_x_leg3),
-                    0.0,
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    g2_a2_leg3,
-                    -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg3_on_q1_leg2,
-                        qd_3_leg3,
-                    ),
-                    -minus_off_3_leg3_on_q1_leg2,
-                    -minus_zz_1_leg4_on_q1_leg2,
-                    -minus_zz_1_leg4_on_q1_leg2,
-                    -(g1_a2_leg4 * minus_rate_1_leg4),
-                    -::overact::math::wide::signed(g1_a2_leg4, minus_rate_1_leg4),
-                    g1_a2_leg4,
-                    zz_2_leg4_on_q1_leg2,
-                    t6_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2),
-                    g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
-                    -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg2,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
-                    off_2_leg4_on_q1_leg2,
-                    -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg4_on_q1_leg2,
-                        qd_3_leg4,
-                    ),
-                    -minus_off_3_leg4_on_q1_leg2,
-                    -minus_zz_platform_on_q1_leg2,
-                    minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - minus_wz_by_a2 * a_y_platform,
-                    my_platform_on_q1_leg2,
-                    m_platform_on_q1_leg2,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    wz_by_a3 * qd_3_leg1, ::overact::math::wide::signed(wz_by_a3, qd_3_leg1),
-                    wz_by_a3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                    wz_by_a3 * qd_3_leg2, ::overact::math::wide::signed(wz_by_a3, qd_3_leg2),
-                    wz_by_a3, rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg3), 1.0, zz_2_leg3_on_q1_leg3,
-                    t7_platform - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3),
-                    INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
-                    L_AB_SQUARED * rate_dot_1_leg3, minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
-                    ::overact::math::wide::signed(
-                        minus_off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -minus_off_2_leg3_on_q1_leg3,
-                    qd_3_leg3 * off_3_leg3_on_q1_leg3,
-                    ::overact::math::wide::signed(off_3_leg3_on_q1_leg3, qd_3_leg3),
-                    off_3_leg3_on_q1_leg3,
-                    zz_1_leg4_on_q1_leg3,
-                    zz_1_leg4_on_q1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(
-                        minus_g1_a3_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_a3_leg4,
-                    zz_2_leg4_on_q1_leg3,
-                    t7_platform
-                        - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3),
-                    -(7.142857142857143
-                        * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                            + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
-                    L_AB_SQUARED * zz_1_leg4_on_q1_leg3,
-                    qd_2_leg4 * off_2_leg4_on_q1_leg3,
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
-                    off_2_leg4_on_q1_leg3,
-                    qd_3_leg4 * off_3_leg4_on_q1_leg3,
-                    ::overact::math::wide::signed(off_3_leg4_on_q1_leg3, qd_3_leg4),
-                    off_3_leg4_on_q1_leg3,
-                    zz_platform_on_q1_leg3,
-                    wz_by_a3 * a_y_platform
-                        - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                            + vx_by_a3 * inv_r_p_a_arm_y_leg3),
-                    -minus_my_platform_on_q1_leg3,
-                    R_P * wz_by_a3_a_x_platform,
-                ],
-            ])
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
+            output[0][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg1,
+                qd_3_leg4,
+            );
+            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
+            output[1][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            );
+            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
+            output[2][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            );
+            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2);
+            output[1][58] = -::overact::math::wide::signed(
+                minus_off_3_leg4_on_q1_leg2,
+                qd_3_leg4,
+            );
+            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3;
+            output[2][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg3,
+                qd_3_leg4,
+            );
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            // --- platform
+            let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
+            output[0][60] = zz_platform_on_q1_leg1;
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            output[0][63] = m_platform_on_q1_leg1;
+            let t2_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+            let t3_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
+                    + t2_platform);
+            output[0][6] = t3_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
+            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
+            output[1][60] = -minus_zz_platform_on_q1_leg2;
+            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[1][63] = m_platform_on_q1_leg2;
+            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+            let t5_platform = R_P_SQUARED_PER_L_AB
+                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                    + t4_platform);
+            output[1][21] = t5_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
+            let t6_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
+                    + t2_platform);
+            output[0][51] = t6_platform
+                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+            let t7_platform = R_P_SQUARED_PER_L_AB
+                * (t4_platform
+                    - (minus_zz_platform_on_q1_leg2
+                        + inv_r_p_my_platform_on_q1_leg2));
+            output[1][51] = t7_platform
+                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
+            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1;
+            output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -5661,24 +6045,38 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
             acceleration: &'a [::core::primitive::f64; 3],
+            output: &'a mut [[::core::primitive::f64; 49]; 3],
         }
         impl ::overact::lanes::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [[::core::primitive::f64; 49]; 3],
-                ::overact::Error,
-            >;
+            type Output = ::core::result::Result<(), ::overact::Error>;
             #[inline(always)]
             fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
-                let Self { pose, twist, acceleration } = self;
+                let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
                 /// l_ab²
@@ -5694,7 +6092,7 @@ impl DualV {
                     - c_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                let mut output = [[0.0; 49]; 3];
+                *output = [[0.0; 49]; 3];
                 output[0][1] = -minus_mx_platform_on_vx;
                 output[0][2] = my_platform_on_vx;
                 output[0][3] = acceleration[0];
@@ -6005,11 +6403,16 @@ impl DualV {
                         gq3_wz_leg,
                     );
                 }
-                ::core::result::Result::Ok(output)
+                ::core::result::Result::Ok(())
             }
         }
         if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs { pose, twist, acceleration });
+            return ::overact::lanes::few(Legs {
+                pose,
+                twist,
+                acceleration,
+                output,
+            });
         }
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -6021,18 +6424,31 @@ impl DualV {
         const R_P: ::core::primitive::f64 = 0.11;
         /// 2 l_ab²
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        output[0][0] = 0.0;
+        output[0][3] = acceleration[0];
+        output[1][0] = 0.0;
+        output[1][3] = acceleration[1];
+        output[2][0] = acceleration[2];
+        output[2][3] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- platform
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][1] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][2] = -a_x_platform;
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][1] = -minus_mx_platform_on_vx;
+        output[1][2] = -minus_mx_platform_on_vx;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[0][2] = my_platform_on_vx;
+        output[1][1] = -my_platform_on_vx;
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let half_d_x_leg3 = 0.5 * d_x_leg3;
@@ -6046,32 +6462,84 @@ impl DualV {
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        output[0][48] = minus_g2_vx_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        output[0][16] = g1_vx_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        output[0][36] = -minus_gq2_vx_leg1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        output[1][48] = minus_g2_vy_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        output[1][16] = g1_vy_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        output[2][16] = -minus_g1_wz_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        output[1][36] = -minus_gq2_vy_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        output[2][36] = gq2_wz_leg1;
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        output[2][48] = gq3_wz_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        output[0][8] = g1_vx_leg1 * rate_1_leg1;
+        output[1][8] = g1_vy_leg1 * rate_1_leg1;
+        output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
+        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
+        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
+        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
+        output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
+        output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
+        output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
+        output[2][40] = qd_3_leg1 * gq3_wz_leg1;
+        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
+        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
+        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vx_leg1 * a2_x_leg1;
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
+        output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
+        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vy_leg1 * a2_x_leg1;
+        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1);
+        output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
         // --- leg2
@@ -6088,22 +6556,70 @@ impl DualV {
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        output[0][17] = -minus_g1_vx_leg2;
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        output[1][17] = -minus_g1_vy_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2;
+        output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+        output[0][13] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
+        output[1][13] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        output[2][17] = g1_wz_leg2;
+        output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
+        output[2][13] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-            + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vx_leg2 * a2_x_leg2);
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        output[0][21] = g2_vx_leg2 * rate_dot_2_leg2;
+        output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2);
+        output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
+        output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vy_leg2 * a2_x_leg2);
+        output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            + minus_g2_wz_leg2 * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        output[0][37] = gq2_vx_leg2;
+        output[0][29] = qd_2_leg2 * gq2_vx_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        output[1][37] = gq2_vy_leg2;
+        output[1][29] = qd_2_leg2 * gq2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        output[2][37] = -minus_gq2_wz_leg2;
+        output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2);
+        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
+        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
+        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
+        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
+        output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
+        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        output[2][41] = qd_3_leg2 * gq3_wz_leg2;
+        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
         // --- leg3
         let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
         let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
@@ -6119,26 +6635,75 @@ impl DualV {
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        output[0][18] = g1_vx_leg3;
         let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
-        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        output[1][18] = g1_vy_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        output[0][10] = g1_vx_leg3 * rate_1_leg3;
+        output[1][10] = g1_vy_leg3 * rate_1_leg3;
+        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
+        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        output[2][18] = g1_wz_leg3;
+        output[2][10] = g1_wz_leg3 * rate_1_leg3;
+        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        output[0][38] = -minus_gq2_vx_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        output[1][38] = -minus_gq2_vy_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
+        output[0][34] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
+        output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+        output[1][34] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3;
         let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
+        output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
+        output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vy_leg3 * a2_x_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_wz_leg3 * a2_x_leg3;
+        output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        output[2][38] = -minus_gq2_wz_leg3;
+        output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+        output[0][46] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
+        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+        output[1][46] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
+        output[2][46] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
@@ -6151,168 +6716,71 @@ impl DualV {
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        output[0][19] = -minus_g1_vx_leg4;
         let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        output[1][19] = -minus_g1_vy_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+        output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
+        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        output[2][19] = -minus_g1_wz_leg4;
+        output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-            + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4);
         let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg2;
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
+        output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
-        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        // --- leg1
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-        // --- leg2
-        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-        // --- leg3
-        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        // --- leg4
+        output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
+        output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
+        output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
+        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4);
+        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4);
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        output[0][39] = gq2_vx_leg4;
+        output[0][31] = qd_2_leg4 * gq2_vx_leg4;
         let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        output[1][39] = gq2_vy_leg4;
+        output[1][31] = qd_2_leg4 * gq2_vy_leg4;
         let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-        let qd_3_leg2 = twist[2] - rate_2_leg2;
-        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        output[2][39] = gq2_wz_leg4;
+        output[2][31] = qd_2_leg4 * gq2_wz_leg4;
+        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
+        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
+        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
         let qd_3_leg4 = twist[2] - rate_2_leg4;
+        output[0][43] = -(g2_vx_leg4 * qd_3_leg4);
+        output[0][47] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
+        output[1][43] = -(g2_vy_leg4 * qd_3_leg4);
+        output[1][47] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
         let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-        ::core::result::Result::Ok([
-            [
-                0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
-                g1_vx_leg1 * rate_dot_1_leg1, minus_g1_vx_leg2 * minus_rate_dot_1_leg2,
-                g1_vx_leg3 * rate_dot_1_leg3, minus_g1_vx_leg4 * minus_rate_dot_1_leg4,
-                g1_vx_leg1 * rate_1_leg1, minus_g1_vx_leg2 * minus_rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, minus_g1_vx_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), g1_vx_leg1,
-                -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
-                minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
-                minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
-                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
-                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
-                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
-                minus_qd_2_leg1 * minus_gq2_vx_leg1, qd_2_leg2 * gq2_vx_leg2,
-                minus_qd_2_leg3 * minus_gq2_vx_leg3, qd_2_leg4 * gq2_vx_leg4,
-                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2),
-                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3),
-                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), -minus_gq2_vx_leg1, gq2_vx_leg2,
-                -minus_gq2_vx_leg3, gq2_vx_leg4, minus_g2_vx_leg1 * qd_3_leg1,
-                -(g2_vx_leg2 * qd_3_leg2), minus_g2_vx_leg3 * qd_3_leg3, -(g2_vx_leg4 * qd_3_leg4),
-                ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
-                -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
-                ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
-                -::overact::math::signed(g2_vx_leg4, qd_3_leg4), minus_g2_vx_leg1,
-            ],
-            [
-                0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
-                g1_vy_leg1 * rate_dot_1_leg1, minus_g1_vy_leg2 * minus_rate_dot_1_leg2,
-                g1_vy_leg3 * rate_dot_1_leg3, minus_g1_vy_leg4 * minus_rate_dot_1_leg4,
-                g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
-                g1_vy_leg3 * rate_1_leg3, minus_g1_vy_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
-                ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), g1_vy_leg1,
-                -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
-                minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
-                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
-                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
-                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
-                minus_qd_2_leg1 * minus_gq2_vy_leg1, qd_2_leg2 * gq2_vy_leg2,
-                minus_qd_2_leg3 * minus_gq2_vy_leg3, qd_2_leg4 * gq2_vy_leg4,
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3),
-                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), -minus_gq2_vy_leg1, gq2_vy_leg2,
-                -minus_gq2_vy_leg3, gq2_vy_leg4, minus_g2_vy_leg1 * qd_3_leg1,
-                -(g2_vy_leg2 * qd_3_leg2), minus_g2_vy_leg3 * qd_3_leg3, -(g2_vy_leg4 * qd_3_leg4),
-                ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
-                -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
-                ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
-                -::overact::math::signed(g2_vy_leg4, qd_3_leg4), minus_g2_vy_leg1,
-            ],
-            [
-                acceleration[2], a_y_platform, -a_x_platform, 0.0,
-                -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
-                g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
-                -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
-                g1_wz_leg3 * rate_1_leg3, minus_g1_wz_leg4 * minus_rate_1_leg4,
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
-                g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4,
-                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
-                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
-                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
-                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
-                -(minus_qd_2_leg1 * gq2_wz_leg1), -(qd_2_leg2 * minus_gq2_wz_leg2),
-                minus_qd_2_leg3 * minus_gq2_wz_leg3, qd_2_leg4 * gq2_wz_leg4,
-                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
-                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
-                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4), gq2_wz_leg1, -minus_gq2_wz_leg2,
-                -minus_gq2_wz_leg3, gq2_wz_leg4, qd_3_leg1 * gq3_wz_leg1, qd_3_leg2 * gq3_wz_leg2,
-                qd_3_leg3 * gq3_wz_leg3, qd_3_leg4 * gq3_wz_leg4,
-                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
-                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
-                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
-                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4), gq3_wz_leg1,
-            ],
-        ])
+        output[2][43] = qd_3_leg4 * gq3_wz_leg4;
+        output[2][47] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
+        ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -6335,13 +6803,32 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_joints_into(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -6350,6 +6837,12 @@ impl DualV {
             const L_AB: ::core::primitive::f64 = 0.28;
             /// r_p
             const R_P: ::core::primitive::f64 = 0.11;
+            output[0][0] = 0.0;
+            output[0][3] = acceleration[0];
+            output[1][0] = 0.0;
+            output[1][3] = acceleration[1];
+            output[2][0] = acceleration[2];
+            output[2][3] = 0.0;
             // --- sines and cosines
             let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1),
             (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
@@ -6361,45 +6854,123 @@ impl DualV {
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[2][1] = a_y_platform;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            output[2][2] = -a_x_platform;
             // --- leg1
             let p_y_leg1 = R_P * c_phi;
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let p_x_leg3 = R_P * s_phi;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][1] = -minus_mx_platform_on_vx;
+            output[1][2] = -minus_mx_platform_on_vx;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            output[0][2] = my_platform_on_vx;
+            output[1][1] = -my_platform_on_vx;
             let k1_leg1 = INV_L_AB / s2_leg1;
-            let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            output[0][48] = minus_g2_vx_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            output[1][48] = minus_g2_vy_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let g1_vx_leg1 = c12_leg1 * k1_leg1;
+            output[0][16] = g1_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let g1_vy_leg1 = s12_leg1 * k1_leg1;
+            output[1][16] = g1_vy_leg1;
+            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+            output[2][16] = -minus_g1_wz_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][36] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][36] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][48] = gq3_wz_leg1;
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = g1_vx_leg1 * rate_1_leg1;
+            output[1][8] = g1_vy_leg1 * rate_1_leg1;
+            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
+            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
+            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[2][12] = -::overact::math::wide::signed(
+                minus_g1_wz_leg1,
+                rate_1_leg1,
+            );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+            output[0][32] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+            output[1][32] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                minus_qd_2_leg1,
+            );
+            output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+            output[2][32] = -::overact::math::wide::signed(
+                gq2_wz_leg1,
+                minus_qd_2_leg1,
+            );
+            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_rate_2_squared_leg1 = L_AB * rate_2_squared_leg1;
             let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
                 + s12_leg1 * a_end_y_leg1 + l_ab_rate_2_squared_leg1;
-            let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
+            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+                + l_ab_rate_1_squared_leg1;
+            output[0][24] = g1_vx_leg1 * a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
-            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
+            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
+            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
+            output[1][24] = g1_vy_leg1 * a_on_f2_leg1
+                + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
+            output[2][24] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+                + g2_wz_leg1 * minus_a_on_f1_leg1);
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
+            output[0][44] = ::overact::math::wide::signed(
+                minus_g2_vx_leg1,
+                qd_3_leg1,
+            );
+            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
+            output[1][44] = ::overact::math::wide::signed(
+                minus_g2_vy_leg1,
+                qd_3_leg1,
+            );
+            output[2][40] = qd_3_leg1 * gq3_wz_leg1;
+            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let k1_leg2 = INV_L_AB / s2_leg2;
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            output[0][17] = g1_vx_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            output[1][17] = g1_vy_leg2;
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
@@ -6408,42 +6979,171 @@ impl DualV {
             let l_ab_rate_2_squared_leg2 = L_AB * rate_2_squared_leg2;
             let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
                 + s12_leg2 * a_end_y_leg1 + l_ab_rate_2_squared_leg2;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+                + l_ab_rate_1_squared_leg2;
+            output[0][25] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
+            output[0][5] = g1_vx_leg2 * rate_dot_1_leg2;
+            let minus_rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
+            output[0][21] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[1][5] = g1_vy_leg2 * rate_dot_1_leg2;
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+            output[2][17] = -minus_g1_wz_leg2;
+            output[2][5] = -(minus_g1_wz_leg2 * rate_dot_1_leg2);
+            output[0][9] = g1_vx_leg2 * rate_1_leg2;
+            output[1][9] = g1_vy_leg2 * rate_1_leg2;
+            output[2][9] = -(minus_g1_wz_leg2 * rate_1_leg2);
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            output[2][13] = -::overact::math::wide::signed(
+                minus_g1_wz_leg2,
+                rate_1_leg2,
+            );
+            output[1][21] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
+                + p_y_leg1 * minus_g2_vx_leg2;
+            output[2][21] = -(g2_wz_leg2 * minus_rate_dot_2_leg2);
+            output[1][25] = g1_vy_leg2 * a_on_f2_leg2
+                + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
+            output[2][25] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+                + g2_wz_leg2 * minus_a_on_f1_leg2);
+            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+            output[0][37] = -minus_gq2_vx_leg2;
+            output[0][29] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
+            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
+            output[1][37] = -minus_gq2_vy_leg2;
+            output[1][29] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
+            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+            output[2][37] = gq2_wz_leg2;
+            output[2][29] = -(minus_qd_2_leg2 * gq2_wz_leg2);
+            output[0][33] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg2,
+                minus_qd_2_leg2,
+            );
+            output[1][33] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg2,
+                minus_qd_2_leg2,
+            );
+            output[2][33] = -::overact::math::wide::signed(
+                gq2_wz_leg2,
+                minus_qd_2_leg2,
+            );
+            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+            output[0][41] = minus_g2_vx_leg2 * qd_3_leg2;
+            output[0][45] = ::overact::math::wide::signed(
+                minus_g2_vx_leg2,
+                qd_3_leg2,
+            );
+            output[1][41] = minus_g2_vy_leg2 * qd_3_leg2;
+            output[1][45] = ::overact::math::wide::signed(
+                minus_g2_vy_leg2,
+                qd_3_leg2,
+            );
+            let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
+            output[2][41] = qd_3_leg2 * gq3_wz_leg2;
+            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let k1_leg3 = INV_L_AB / s2_leg3;
             let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            output[0][18] = g1_vx_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            output[1][18] = g1_vy_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][10] = g1_vx_leg3 * rate_1_leg3;
+            output[1][10] = g1_vy_leg3 * rate_1_leg3;
+            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][18] = g1_wz_leg3;
+            output[2][10] = g1_wz_leg3 * rate_1_leg3;
+            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][38] = -minus_gq2_vx_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
-            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_rate_2_squared_leg3 = L_AB * rate_2_squared_leg3;
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + l_ab_rate_2_squared_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
+            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+                + l_ab_rate_1_squared_leg3;
+            output[0][26] = g1_vx_leg3 * a_on_f2_leg3
+                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
+            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
+            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[1][26] = g1_vy_leg3 * a_on_f2_leg3
+                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
+            output[2][26] = g1_wz_leg3 * a_on_f2_leg3
+                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
+            output[0][34] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+            output[1][38] = -minus_gq2_vy_leg3;
+            output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][38] = -minus_gq2_wz_leg3;
+            output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+            output[1][34] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][34] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            );
+            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+            output[0][46] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            );
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+            output[1][46] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            );
+            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][42] = qd_3_leg3 * gq3_wz_leg3;
+            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
-            let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
             let k1_leg4 = INV_L_AB / s2_leg4;
             let g1_vx_leg4 = c12_leg4 * k1_leg4;
+            output[0][19] = g1_vx_leg4;
+            let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
+            let g1_vy_leg4 = s12_leg4 * k1_leg4;
+            output[1][19] = g1_vy_leg4;
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -6452,229 +7152,74 @@ impl DualV {
             let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
             let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3
                 + s12_leg4 * a_end_y_leg3 + l_ab_rate_2_squared_leg4;
-            let g1_vy_leg4 = s12_leg4 * k1_leg4;
             let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
             let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
-            let rate_dot_1_leg4 = k1_leg4
-                * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
-            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-                + l_ab_rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
-                + l_ab_rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
-            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
-                + p_y_leg1 * minus_g2_vx_leg2;
-            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
-                + l_ab_rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
+            output[0][27] = g1_vx_leg4 * a_on_f2_leg4
+                + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
+            let rate_dot_1_leg4 = k1_leg4
+                * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
+            output[0][7] = g1_vx_leg4 * rate_dot_1_leg4;
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
+            output[0][23] = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+            output[1][7] = g1_vy_leg4 * rate_dot_1_leg4;
+            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+            output[2][19] = g1_wz_leg4;
+            output[2][7] = g1_wz_leg4 * rate_dot_1_leg4;
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
-            // --- leg1
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            // --- leg2
-            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
-            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
-            // --- leg3
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            // --- leg4
+            output[2][23] = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+            output[1][23] = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+            output[0][11] = g1_vx_leg4 * rate_1_leg4;
+            output[1][11] = g1_vy_leg4 * rate_1_leg4;
+            output[2][11] = g1_wz_leg4 * rate_1_leg4;
+            output[0][15] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
+            output[1][15] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
+            output[2][15] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
+            output[1][27] = g1_vy_leg4 * a_on_f2_leg4
+                + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
+            output[2][27] = g1_wz_leg4 * a_on_f2_leg4
+                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
+            output[0][39] = -minus_gq2_vx_leg4;
+            output[0][31] = minus_qd_2_leg4 * minus_gq2_vx_leg4;
             let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
+            output[1][39] = -minus_gq2_vy_leg4;
+            output[1][31] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
             let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
-            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][39] = -minus_gq2_wz_leg4;
+            output[2][31] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
+            output[0][35] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg4,
+                minus_qd_2_leg4,
+            );
+            output[1][35] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg4,
+                minus_qd_2_leg4,
+            );
+            output[2][35] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg4,
+                minus_qd_2_leg4,
+            );
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+            output[0][43] = minus_g2_vx_leg4 * qd_3_leg4;
+            output[0][47] = ::overact::math::wide::signed(
+                minus_g2_vx_leg4,
+                qd_3_leg4,
+            );
+            output[1][43] = minus_g2_vy_leg4 * qd_3_leg4;
+            output[1][47] = ::overact::math::wide::signed(
+                minus_g2_vy_leg4,
+                qd_3_leg4,
+            );
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
-            ::core::result::Result::Ok([
-                [
-                    0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
-                    g1_vx_leg1 * rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
-                    g1_vx_leg3 * rate_dot_1_leg3, g1_vx_leg4 * rate_dot_1_leg4,
-                    g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                    g1_vx_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
-                    g1_vx_leg3, g1_vx_leg4, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                    minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                    g1_vx_leg1 * a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a_on_f1_leg1,
-                    g1_vx_leg2 * a_on_f2_leg2
-                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                    g1_vx_leg3 * a_on_f2_leg3
-                        + minus_g2_vx_leg3 * minus_a_on_f1_leg3,
-                    g1_vx_leg4 * a_on_f2_leg4
-                        + minus_g2_vx_leg4 * minus_a_on_f1_leg4,
-                    minus_qd_2_leg1 * minus_gq2_vx_leg1,
-                    minus_qd_2_leg2 * minus_gq2_vx_leg2,
-                    minus_qd_2_leg3 * minus_gq2_vx_leg3,
-                    minus_qd_2_leg4 * minus_gq2_vx_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    -minus_gq2_vx_leg1,
-                    -minus_gq2_vx_leg2,
-                    -minus_gq2_vx_leg3,
-                    -minus_gq2_vx_leg4,
-                    minus_g2_vx_leg1 * qd_3_leg1,
-                    minus_g2_vx_leg2 * qd_3_leg2,
-                    minus_g2_vx_leg3 * qd_3_leg3,
-                    minus_g2_vx_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(minus_g2_vx_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(minus_g2_vx_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(minus_g2_vx_leg3, qd_3_leg3),
-                    ::overact::math::wide::signed(minus_g2_vx_leg4, qd_3_leg4),
-                    minus_g2_vx_leg1,
-                ],
-                [
-                    0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
-                    g1_vy_leg1 * rate_dot_1_leg1, g1_vy_leg2 * rate_dot_1_leg2,
-                    g1_vy_leg3 * rate_dot_1_leg3, g1_vy_leg4 * rate_dot_1_leg4,
-                    g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
-                    g1_vy_leg4 * rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
-                    g1_vy_leg3, g1_vy_leg4, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                    minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                    minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                    minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                    g1_vy_leg1 * a_on_f2_leg1
-                        + minus_g2_vy_leg1 * minus_a_on_f1_leg1,
-                    g1_vy_leg2 * a_on_f2_leg2
-                        + minus_g2_vy_leg2 * minus_a_on_f1_leg2,
-                    g1_vy_leg3 * a_on_f2_leg3
-                        + minus_g2_vy_leg3 * minus_a_on_f1_leg3,
-                    g1_vy_leg4 * a_on_f2_leg4
-                        + minus_g2_vy_leg4 * minus_a_on_f1_leg4,
-                    minus_qd_2_leg1 * minus_gq2_vy_leg1,
-                    minus_qd_2_leg2 * minus_gq2_vy_leg2,
-                    minus_qd_2_leg3 * minus_gq2_vy_leg3,
-                    minus_qd_2_leg4 * minus_gq2_vy_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    -minus_gq2_vy_leg1,
-                    -minus_gq2_vy_leg2,
-                    -minus_gq2_vy_leg3,
-                    -minus_gq2_vy_leg4,
-                    minus_g2_vy_leg1 * qd_3_leg1,
-                    minus_g2_vy_leg2 * qd_3_leg2,
-                    minus_g2_vy_leg3 * qd_3_leg3,
-                    minus_g2_vy_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(minus_g2_vy_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(minus_g2_vy_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(minus_g2_vy_leg3, qd_3_leg3),
-                    ::overact::math::wide::signed(minus_g2_vy_leg4, qd_3_leg4),
-                    minus_g2_vy_leg1,
-                ],
-                [
-                    acceleration[2], a_y_platform, -a_x_platform, 0.0,
-                    -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(minus_g1_wz_leg2 * rate_dot_1_leg2),
-                    g1_wz_leg3 * rate_dot_1_leg3, g1_wz_leg4 * rate_dot_1_leg4,
-                    -(minus_g1_wz_leg1 * rate_1_leg1), -(minus_g1_wz_leg2 * rate_1_leg2),
-                    g1_wz_leg3 * rate_1_leg3, g1_wz_leg4 * rate_1_leg4,
-                    -::overact::math::wide::signed(minus_g1_wz_leg1, rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_wz_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4), -minus_g1_wz_leg1,
-                    -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4,
-                    -(g2_wz_leg1 * minus_rate_dot_2_leg1), -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                    minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                    minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                    -(minus_g1_wz_leg1 * a_on_f2_leg1
-                        + g2_wz_leg1 * minus_a_on_f1_leg1),
-                    -(minus_g1_wz_leg2 * a_on_f2_leg2
-                        + g2_wz_leg2 * minus_a_on_f1_leg2),
-                    g1_wz_leg3 * a_on_f2_leg3
-                        + minus_g2_wz_leg3 * minus_a_on_f1_leg3,
-                    g1_wz_leg4 * a_on_f2_leg4
-                        + minus_g2_wz_leg4 * minus_a_on_f1_leg4,
-                    -(minus_qd_2_leg1 * gq2_wz_leg1),
-                    -(minus_qd_2_leg2 * gq2_wz_leg2),
-                    minus_qd_2_leg3 * minus_gq2_wz_leg3,
-                    minus_qd_2_leg4 * minus_gq2_wz_leg4,
-                    -::overact::math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                    -::overact::math::wide::signed(gq2_wz_leg2, minus_qd_2_leg2),
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg4,
-                        minus_qd_2_leg4,
-                    ),
-                    gq2_wz_leg1,
-                    gq2_wz_leg2,
-                    -minus_gq2_wz_leg3,
-                    -minus_gq2_wz_leg4,
-                    qd_3_leg1 * gq3_wz_leg1,
-                    qd_3_leg2 * gq3_wz_leg2,
-                    qd_3_leg3 * gq3_wz_leg3,
-                    qd_3_leg4 * gq3_wz_leg4,
-                    ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3),
-                    ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4),
-                    gq3_wz_leg1,
-                ],
-            ])
+            output[2][43] = qd_3_leg4 * gq3_wz_leg4;
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -6699,6 +7244,25 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -6706,7 +7270,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -6717,87 +7281,144 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][0] = 0.0;
+            output[1][0] = 0.0;
+            output[2][3] = 0.0;
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
+            // --- leg3
             let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+            output[1][38] = -minus_gq2_vy_leg3;
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+            output[0][18] = g1_vx_leg3;
             let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 / det_leg3;
+            output[1][18] = g1_vy_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][18] = g1_wz_leg3;
+            let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][38] = -minus_gq2_vx_leg3;
+            let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][38] = -minus_gq2_wz_leg3;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            let k1_leg4 = 1.0 / det_leg4;
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            output[0][19] = -minus_g1_vx_leg4;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            output[1][19] = -minus_g1_vy_leg4;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            output[2][19] = -minus_g1_wz_leg4;
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+            output[0][39] = gq2_vx_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+            output[1][39] = gq2_vy_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+            output[2][39] = gq2_wz_leg4;
+            // --- leg1
             let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
-            // --- leg2
-            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            // --- leg1
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
             let k1_leg1 = 1.0 / det_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            output[0][48] = minus_g2_vx_leg1;
+            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            output[1][48] = minus_g2_vy_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            output[0][16] = g1_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            output[1][16] = g1_vy_leg1;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            // --- leg3
-            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            output[2][16] = -minus_g1_wz_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][36] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][36] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][48] = gq3_wz_leg1;
+            // --- leg2
+            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-            let g1_vy_leg3 = l2_y_leg3 / det_leg3;
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
             ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            output[1][17] = -minus_g1_vy_leg2;
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            output[0][17] = -minus_g1_vx_leg2;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            output[2][17] = g1_wz_leg2;
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+            output[0][37] = gq2_vx_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][37] = gq2_vy_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+            output[2][37] = -minus_gq2_wz_leg2;
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
                 - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -6847,26 +7468,170 @@ impl DualV {
                 ::overact::ActuatorGroup::All,
             )?;
             let wz = t3 / pivot_3;
-            // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
-            let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
-            let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let vy = t2 / pivot_2 - l_3_2 * wz;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
-            // --- leg2
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = g1_vx_leg1 * rate_1_leg1;
+            output[1][8] = g1_vy_leg1 * rate_1_leg1;
+            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
+            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
+            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[2][12] = -::overact::math::wide::signed(
+                minus_g1_wz_leg1,
+                rate_1_leg1,
+            );
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2;
+            output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+            output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
+            output[0][13] = ::overact::math::wide::signed(
+                minus_g1_vx_leg2,
+                minus_rate_1_leg2,
+            );
+            output[1][13] = ::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                minus_rate_1_leg2,
+            );
+            output[2][13] = -::overact::math::wide::signed(
+                g1_wz_leg2,
+                minus_rate_1_leg2,
+            );
+            let v_end_x_leg3 = vx + v_arm_x_leg3;
+            let v_end_y_leg3 = vy + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][10] = g1_vx_leg3 * rate_1_leg3;
+            output[1][10] = g1_vy_leg3 * rate_1_leg3;
+            output[2][10] = g1_wz_leg3 * rate_1_leg3;
+            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+                + minus_g1_vy_leg4 * v_end_y_leg3;
+            output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+            output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+            output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+            output[0][15] = ::overact::math::wide::signed(
+                minus_g1_vx_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][15] = ::overact::math::wide::signed(
+                minus_g1_vy_leg4,
+                minus_rate_1_leg4,
+            );
+            output[2][15] = ::overact::math::wide::signed(
+                minus_g1_wz_leg4,
+                minus_rate_1_leg4,
+            );
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][28] = minus_gq2_vx_leg1 * minus_qd_2_leg1;
+            output[0][32] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][28] = minus_gq2_vy_leg1 * minus_qd_2_leg1;
+            output[1][32] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                minus_qd_2_leg1,
+            );
+            output[2][28] = -(gq2_wz_leg1 * minus_qd_2_leg1);
+            output[2][32] = -::overact::math::wide::signed(
+                gq2_wz_leg1,
+                minus_qd_2_leg1,
+            );
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+            output[0][29] = gq2_vx_leg2 * qd_2_leg2;
+            output[0][33] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2);
+            output[1][29] = gq2_vy_leg2 * qd_2_leg2;
+            output[1][33] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
+            output[2][29] = -(minus_gq2_wz_leg2 * qd_2_leg2);
+            output[2][33] = -::overact::math::wide::signed(
+                minus_gq2_wz_leg2,
+                qd_2_leg2,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + wz;
+            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
+            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
+            output[2][40] = gq3_wz_leg1 * qd_3_leg1;
+            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
+            output[0][44] = ::overact::math::wide::signed(
+                minus_g2_vx_leg1,
+                qd_3_leg1,
+            );
+            output[1][44] = ::overact::math::wide::signed(
+                minus_g2_vy_leg1,
+                qd_3_leg1,
+            );
+            let qd_3_leg2 = wz - rate_2_leg2;
+            output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
+            output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
+            output[0][45] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2);
+            output[1][45] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2);
+            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+            output[2][41] = gq3_wz_leg2 * qd_3_leg2;
+            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
+            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+                + minus_g2_vy_leg3 * v_end_y_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][30] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
+            output[0][34] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][30] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
+            output[1][34] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][30] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
+            output[2][34] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            );
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][31] = gq2_vx_leg4 * qd_2_leg4;
+            output[0][35] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
+            output[1][31] = gq2_vy_leg4 * qd_2_leg4;
+            output[1][35] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
+            output[2][31] = gq2_wz_leg4 * qd_2_leg4;
+            output[2][35] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+            output[0][46] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            );
+            output[1][46] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            );
+            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
+            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][43] = -(g2_vx_leg4 * qd_3_leg4);
+            output[1][43] = -(g2_vy_leg4 * qd_3_leg4);
+            output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
+            output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
+            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[2][43] = gq3_wz_leg4 * qd_3_leg4;
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
-            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-                + minus_g1_vy_leg2 * v_end_y_leg1;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -6874,16 +7639,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-                + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -6891,19 +7651,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_leg1;
             // --- leg3
-            let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-            let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-            let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
-            let v_end_y_leg3 = vy + v_arm_y_leg3;
-            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-                + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
@@ -6912,16 +7664,11 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-                + minus_g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -6942,264 +7689,117 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            // --- leg1
+            output[2][0] = dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
-            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
-            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
+            output[1][3] = dvy;
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            output[0][3] = dvx;
+            // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
-            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
-                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            // --- leg3
-            let a_end_x_leg3 = dvx - a_arm_x_leg1;
-            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
-            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
-                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
-            let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
+            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
+            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+            // --- leg2
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
+            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2);
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            output[0][21] = g2_vx_leg2 * rate_dot_2_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1;
+            // --- leg3
+            let a_end_x_leg3 = dvx - a_arm_x_leg1;
+            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = (a_on_f2_leg3
                 + rate_2_squared_leg3 * t1_leg3) / det_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
+            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            // --- leg4
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+            // --- leg3
+            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
+                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
+            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            // --- leg1
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            // --- leg2
-            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            // --- leg4
-            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            let qd_3_leg2 = wz - rate_2_leg2;
-            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            let qd_3_leg4 = wz - rate_2_leg4;
-            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            ::core::result::Result::Ok([
-                [
-                    0.0, -minus_mx_platform_on_vx, my_platform_on_vx, dvx,
-                    g1_vx_leg1 * rate_dot_1_leg1, minus_g1_vx_leg2 * minus_rate_dot_1_leg2,
-                    g1_vx_leg3 * rate_dot_1_leg3, minus_g1_vx_leg4 * minus_rate_dot_1_leg4,
-                    g1_vx_leg1 * rate_1_leg1, minus_g1_vx_leg2 * minus_rate_1_leg2,
-                    g1_vx_leg3 * rate_1_leg3, minus_g1_vx_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_leg2,
-                        minus_rate_1_leg2,
-                    ),
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    g1_vx_leg1,
-                    -minus_g1_vx_leg2,
-                    g1_vx_leg3,
-                    -minus_g1_vx_leg4,
-                    minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                    g2_vx_leg2 * rate_dot_2_leg2,
-                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                    g2_vx_leg4 * rate_dot_2_leg4,
-                    g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * a2_x_leg1,
-                    -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
-                        + g2_vx_leg2 * a2_x_leg2),
-                    g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_vx_leg3 * a2_x_leg3,
-                    -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_vx_leg4 * a2_x_leg4),
-                    minus_gq2_vx_leg1 * minus_qd_2_leg1,
-                    gq2_vx_leg2 * qd_2_leg2,
-                    minus_gq2_vx_leg3 * minus_qd_2_leg3,
-                    gq2_vx_leg4 * qd_2_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4),
-                    -minus_gq2_vx_leg1,
-                    gq2_vx_leg2,
-                    -minus_gq2_vx_leg3,
-                    gq2_vx_leg4,
-                    minus_g2_vx_leg1 * qd_3_leg1,
-                    -(g2_vx_leg2 * qd_3_leg2),
-                    minus_g2_vx_leg3 * qd_3_leg3,
-                    -(g2_vx_leg4 * qd_3_leg4),
-                    ::overact::math::wide::signed(minus_g2_vx_leg1, qd_3_leg1),
-                    -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(minus_g2_vx_leg3, qd_3_leg3),
-                    -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4),
-                    minus_g2_vx_leg1,
-                ],
-                [
-                    0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, dvy,
-                    g1_vy_leg1 * rate_dot_1_leg1, minus_g1_vy_leg2 * minus_rate_dot_1_leg2,
-                    g1_vy_leg3 * rate_dot_1_leg3, minus_g1_vy_leg4 * minus_rate_dot_1_leg4,
-                    g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
-                    g1_vy_leg3 * rate_1_leg3, minus_g1_vy_leg4 * minus_rate_1_leg4,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_leg2,
-                        minus_rate_1_leg2,
-                    ),
-                    ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    g1_vy_leg1,
-                    -minus_g1_vy_leg2,
-                    g1_vy_leg3,
-                    -minus_g1_vy_leg4,
-                    minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                    g2_vy_leg2 * rate_dot_2_leg2,
-                    minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                    g2_vy_leg4 * rate_dot_2_leg4,
-                    g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
-                        + minus_g2_vy_leg1 * a2_x_leg1,
-                    -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
-                        + g2_vy_leg2 * a2_x_leg2),
-                    g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_vy_leg3 * a2_x_leg3,
-                    -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_vy_leg4 * a2_x_leg4),
-                    minus_gq2_vy_leg1 * minus_qd_2_leg1,
-                    gq2_vy_leg2 * qd_2_leg2,
-                    minus_gq2_vy_leg3 * minus_qd_2_leg3,
-                    gq2_vy_leg4 * qd_2_leg4,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4),
-                    -minus_gq2_vy_leg1,
-                    gq2_vy_leg2,
-                    -minus_gq2_vy_leg3,
-                    gq2_vy_leg4,
-                    minus_g2_vy_leg1 * qd_3_leg1,
-                    -(g2_vy_leg2 * qd_3_leg2),
-                    minus_g2_vy_leg3 * qd_3_leg3,
-                    -(g2_vy_leg4 * qd_3_leg4),
-                    ::overact::math::wide::signed(minus_g2_vy_leg1, qd_3_leg1),
-                    -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(minus_g2_vy_leg3, qd_3_leg3),
-                    -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4),
-                    minus_g2_vy_leg1,
-                ],
-                [
-                    dwz, a_y_platform, -a_x_platform, 0.0, -(minus_g1_wz_leg1 * rate_dot_1_leg1),
-                    -(g1_wz_leg2 * minus_rate_dot_1_leg2), g1_wz_leg3 * rate_dot_1_leg3,
-                    minus_g1_wz_leg4 * minus_rate_dot_1_leg4, -(minus_g1_wz_leg1 * rate_1_leg1),
-                    -(g1_wz_leg2 * minus_rate_1_leg2), g1_wz_leg3 * rate_1_leg3,
-                    minus_g1_wz_leg4 * minus_rate_1_leg4,
-                    -::overact::math::wide::signed(minus_g1_wz_leg1, rate_1_leg1),
-                    -::overact::math::wide::signed(g1_wz_leg2, minus_rate_1_leg2),
-                    ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3),
-                    ::overact::math::wide::signed(
-                        minus_g1_wz_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    -minus_g1_wz_leg1,
-                    g1_wz_leg2,
-                    g1_wz_leg3,
-                    -minus_g1_wz_leg4,
-                    -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                    -(minus_g2_wz_leg2 * rate_dot_2_leg2),
-                    minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                    g2_wz_leg4 * rate_dot_2_leg4,
-                    -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-                        + g2_wz_leg1 * a2_x_leg1),
-                    g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
-                        + minus_g2_wz_leg2 * a2_x_leg2,
-                    g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                        + minus_g2_wz_leg3 * a2_x_leg3,
-                    -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-                        + g2_wz_leg4 * a2_x_leg4),
-                    -(gq2_wz_leg1 * minus_qd_2_leg1),
-                    -(minus_gq2_wz_leg2 * qd_2_leg2),
-                    minus_gq2_wz_leg3 * minus_qd_2_leg3,
-                    gq2_wz_leg4 * qd_2_leg4,
-                    -::overact::math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1),
-                    -::overact::math::wide::signed(minus_gq2_wz_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(
-                        minus_gq2_wz_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4),
-                    gq2_wz_leg1,
-                    -minus_gq2_wz_leg2,
-                    -minus_gq2_wz_leg3,
-                    gq2_wz_leg4,
-                    gq3_wz_leg1 * qd_3_leg1,
-                    gq3_wz_leg2 * qd_3_leg2,
-                    gq3_wz_leg3 * qd_3_leg3,
-                    gq3_wz_leg4 * qd_3_leg4,
-                    ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2),
-                    ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3),
-                    ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4),
-                    gq3_wz_leg1,
-                ],
-            ])
+            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4);
+            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][1] = -minus_mx_platform_on_vx;
+            output[1][2] = -minus_mx_platform_on_vx;
+            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+            output[0][2] = my_platform_on_vx;
+            output[1][1] = -my_platform_on_vx;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][1] = a_y_platform;
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            output[2][2] = -a_x_platform;
+            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
+            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
+            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1;
+            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1);
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
+            output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2);
+            output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vy_leg2 * a2_x_leg2);
+            output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+                + minus_g2_wz_leg2 * a2_x_leg2;
+            output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
+            output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
+            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
+            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
+            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3;
+            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3;
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+            output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+            output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vy_leg4 * a2_x_leg4);
+            output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4);
+            output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
+            output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -7221,10 +7821,27 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -7235,46 +7852,38 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][5..7].fill(0.0);
+            output[0][9..11].fill(0.0);
+            output[0][13..15].fill(0.0);
+            output[0][16] = 1.0;
+            output[0][17..19].fill(0.0);
+            output[1][4] = 0.0;
+            output[1][6] = 0.0;
+            output[1][8] = 0.0;
+            output[1][10] = 0.0;
+            output[1][12] = 0.0;
+            output[1][14] = 0.0;
+            output[1][16] = 0.0;
+            output[1][17] = 1.0;
+            output[1][18] = 0.0;
+            output[2][4..6].fill(0.0);
+            output[2][8..10].fill(0.0);
+            output[2][12..14].fill(0.0);
+            output[2][16..18].fill(0.0);
+            output[2][18] = 1.0;
+            output[2][20..22].fill(0.0);
+            output[2][24..26].fill(0.0);
+            output[2][28..30].fill(0.0);
+            output[2][32..34].fill(0.0);
+            output[2][36..38].fill(0.0);
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let p_y_leg1 = R_P * c_phi;
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
-            // --- leg2
-            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            // --- leg3
-            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
-            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            let k1_leg3 = 1.0 / det_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
-            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            // --- leg1
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -7285,64 +7894,55 @@ impl DualV {
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-            let det_ja = g1_wz_leg3 * t1;
-            let half_per_det_ja = 0.5 / det_ja;
-            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
-                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
-            let wz_by_a3 = t1 * half_per_det_ja;
-            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
-                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
-                * half_per_det_ja;
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = rate_1_leg1;
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
+            // --- leg2
+            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+            let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[1][9] = -minus_rate_1_leg2;
+            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            // --- leg1
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
-                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
-                * half_per_det_ja;
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            output[0][4] = rate_dot_1_leg1;
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
@@ -7350,29 +7950,243 @@ impl DualV {
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
-            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-                + minus_g1_vy_leg2 * v_end_y_leg1;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let minus_rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+            output[1][5] = -minus_rate_dot_1_leg2;
             // --- leg3
+            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            let k1_leg3 = 1.0 / det_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][10] = rate_1_leg3;
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+            let det_ja = g1_wz_leg3 * t1;
+            let half_per_det_ja = 0.5 / det_ja;
+            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
+                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
+                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+                * half_per_det_ja;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
+                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+                * half_per_det_ja;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg2;
+            let rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+                + minus_g2_wz_leg2 * minus_wz_by_a2;
+            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
+            output[1][36] = g2_a2_leg1;
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][37] = g2_a1_leg2;
+            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][48] = wz_by_a3;
+            output[0][0] = wz_by_a1 * acceleration[2];
+            output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[1][3] = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * acceleration[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+            output[0][29] = g2_a1_leg2 * qd_2_leg2;
+            output[1][32] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+            output[1][48] = -minus_off_3_leg1_on_q1_leg2;
+            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
+            output[2][40] = wz_by_a3 * qd_3_leg1;
+            let qd_3_leg2 = twist[2] - rate_2_leg2;
+            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
+            output[0][45] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg2,
+            );
+            output[2][41] = wz_by_a3 * qd_3_leg2;
+            output[1][44] = -::overact::math::wide::signed(
+                minus_off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+            output[2][0] = zz_platform_on_q1_leg3;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
+            output[2][3] = R_P * wz_by_a3_a_x_platform;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            output[2][1] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][36] = off_2_leg1_on_q1_leg1;
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][32] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1;
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][44] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][37] = off_2_leg2_on_q1_leg2;
+            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
+            output[1][33] = ::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                qd_2_leg2,
+            );
+            let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2);
+            output[1][45] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg2,
+                qd_3_leg2,
+            );
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+            output[2][6] = rate_dot_1_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
+            output[2][34] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
+            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3;
+            output[2][46] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg3,
+            );
+            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][38] = g2_a1_leg3;
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][38] = g2_a2_leg3;
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
+            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[0][34] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][34] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
+            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            output[0][46] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg3,
+            );
+            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
+            output[1][46] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg3,
+                qd_3_leg3,
+            );
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -7395,10 +8209,6 @@ impl DualV {
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let t2 = minus_g1_vy_leg4 * vy_by_a3 + minus_g1_vx_leg4 * vx_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * t2;
-            let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
@@ -7408,284 +8218,100 @@ impl DualV {
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            output[2][27] = -(7.142857142857143
+                * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4));
+            let minus_g1_a3_leg4 = 2.0 * t2;
+            output[2][19] = -minus_g1_a3_leg4;
+            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
+            output[2][15] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let minus_rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_wz_leg2 * wz_by_a1;
-            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg2;
-            let rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
-                + minus_g2_wz_leg2 * minus_wz_by_a2;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
-            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
+            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
             let g2_a3_leg4 = 2.0 * t3;
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
+            let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][19] = g1_a1_leg4;
             let g2_wz_leg4 = g1_wz_leg3 * g2_a3_leg4;
             let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
                 + g2_wz_leg4 * wz_by_a1;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4;
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][19] = g1_a2_leg4;
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4;
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
+            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
+            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
+            output[0][15] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][15] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            let qd_3_leg2 = twist[2] - rate_2_leg2;
-            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            // --- leg3
-            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            // --- leg4
+            output[0][39] = off_2_leg4_on_q1_leg1;
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
+            output[0][47] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg4,
+                qd_3_leg4,
+            );
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2;
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
+            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
+            output[1][47] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg4,
+                qd_3_leg4,
+            );
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3;
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            ::core::result::Result::Ok([
-                [
-                    wz_by_a1 * acceleration[2],
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    vx_by_a1 * inv_r_p_a_arm_x_leg1
-                        + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
-                        - wz_by_a1 * a_x_platform,
-                    vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
-                    rate_dot_1_leg1,
-                    0.0,
-                    0.0,
-                    -(g1_a1_leg4 * minus_rate_dot_1_leg4),
-                    rate_1_leg1,
-                    0.0,
-                    0.0,
-                    -(g1_a1_leg4 * minus_rate_1_leg4),
-                    ::overact::math::wide::sign(rate_1_leg1),
-                    0.0,
-                    0.0,
-                    -::overact::math::wide::signed(g1_a1_leg4, minus_rate_1_leg4),
-                    1.0,
-                    0.0,
-                    0.0,
-                    g1_a1_leg4,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                    g2_a1_leg2 * rate_dot_2_leg2,
-                    -(g2_a1_leg3 * minus_rate_dot_2_leg3),
-                    g2_a1_leg4 * rate_dot_2_leg4,
-                    INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
-                    -(g2_a1_leg2 * a2_x_leg2),
-                    -(g2_a1_leg3 * a2_x_leg3),
-                    g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    g2_a1_leg2 * qd_2_leg2,
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg1,
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
-                    off_2_leg1_on_q1_leg1,
-                    g2_a1_leg2,
-                    g2_a1_leg3,
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
-                    qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
-                    qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg2,
-                        qd_3_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg4,
-                        qd_3_leg4,
-                    ),
-                    off_3_leg1_on_q1_leg1,
-                ],
-                [
-                    -(minus_wz_by_a2 * acceleration[2]),
-                    minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - minus_wz_by_a2 * a_y_platform,
-                    vx_by_a2 * inv_r_p_a_arm_x_leg1
-                        + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                        + minus_wz_by_a2 * a_x_platform,
-                    vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1],
-                    0.0,
-                    -minus_rate_dot_1_leg2,
-                    0.0,
-                    -(g1_a2_leg4 * minus_rate_dot_1_leg4),
-                    0.0,
-                    -minus_rate_1_leg2,
-                    0.0,
-                    -(g1_a2_leg4 * minus_rate_1_leg4),
-                    0.0,
-                    -::overact::math::wide::sign(minus_rate_1_leg2),
-                    0.0,
-                    -::overact::math::wide::signed(g1_a2_leg4, minus_rate_1_leg4),
-                    0.0,
-                    1.0,
-                    0.0,
-                    g1_a2_leg4,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
-                    g2_a2_leg2 * rate_dot_2_leg2,
-                    -(g2_a2_leg3 * minus_rate_dot_2_leg3),
-                    g2_a2_leg4 * rate_dot_2_leg4,
-                    -(g2_a2_leg1 * a2_x_leg1),
-                    INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
-                    -(g2_a2_leg3 * a2_x_leg3),
-                    g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
-                    -(g2_a2_leg1 * minus_qd_2_leg1),
-                    qd_2_leg2 * off_2_leg2_on_q1_leg2,
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg2,
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    ::overact::math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
-                    g2_a2_leg1,
-                    off_2_leg2_on_q1_leg2,
-                    g2_a2_leg3,
-                    off_2_leg4_on_q1_leg2,
-                    -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
-                    -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2),
-                    -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3),
-                    -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg1_on_q1_leg2,
-                        qd_3_leg1,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg2,
-                        qd_3_leg2,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg3,
-                        qd_3_leg3,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg4,
-                        qd_3_leg4,
-                    ),
-                    -minus_off_3_leg1_on_q1_leg2,
-                ],
-                [
-                    zz_platform_on_q1_leg3,
-                    wz_by_a3 * a_y_platform
-                        - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                            + vx_by_a3 * inv_r_p_a_arm_y_leg3),
-                    -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform),
-                    R_P * wz_by_a3_a_x_platform,
-                    0.0,
-                    0.0,
-                    rate_dot_1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_dot_1_leg4,
-                    0.0,
-                    0.0,
-                    rate_1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_1_leg4,
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg3),
-                    ::overact::math::wide::signed(
-                        minus_g1_a3_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    0.0,
-                    0.0,
-                    1.0,
-                    -minus_g1_a3_leg4,
-                    0.0,
-                    0.0,
-                    minus_g2_a3_leg3 * minus_rate_dot_2_leg3,
-                    g2_a3_leg4 * rate_dot_2_leg4,
-                    0.0,
-                    0.0,
-                    INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
-                    -(7.142857142857143
-                        * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4)),
-                    0.0,
-                    0.0,
-                    minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
-                    qd_2_leg4 * off_2_leg4_on_q1_leg3,
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::signed(
-                        minus_off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
-                    0.0,
-                    0.0,
-                    -minus_off_2_leg3_on_q1_leg3,
-                    off_2_leg4_on_q1_leg3,
-                    wz_by_a3 * qd_3_leg1,
-                    wz_by_a3 * qd_3_leg2,
-                    qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3,
-                    qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4,
-                    ::overact::math::wide::signed(wz_by_a3, qd_3_leg1),
-                    ::overact::math::wide::signed(wz_by_a3, qd_3_leg2),
-                    ::overact::math::wide::signed(
-                        wz_by_a3_minus_g2_a3_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a3_minus_g2_a3_leg4,
-                        qd_3_leg4,
-                    ),
-                    wz_by_a3,
-                ],
-            ])
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
+            output[2][47] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg4,
+                qd_3_leg4,
+            );
+            output[0][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            );
+            output[1][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            );
+            output[2][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -7709,13 +8335,32 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_joints_into(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -7724,29 +8369,41 @@ impl DualV {
             const L_AB: ::core::primitive::f64 = 0.28;
             /// r_p
             const R_P: ::core::primitive::f64 = 0.11;
+            output[0][5..7].fill(0.0);
+            output[0][9..11].fill(0.0);
+            output[0][13..15].fill(0.0);
+            output[0][16] = 1.0;
+            output[0][17..19].fill(0.0);
+            output[1][4] = 0.0;
+            output[1][6] = 0.0;
+            output[1][8] = 0.0;
+            output[1][10] = 0.0;
+            output[1][12] = 0.0;
+            output[1][14] = 0.0;
+            output[1][16] = 0.0;
+            output[1][17] = 1.0;
+            output[1][18] = 0.0;
+            output[2][4..6].fill(0.0);
+            output[2][8..10].fill(0.0);
+            output[2][12..14].fill(0.0);
+            output[2][16..18].fill(0.0);
+            output[2][18] = 1.0;
+            output[2][20..22].fill(0.0);
+            output[2][24..26].fill(0.0);
+            output[2][28..30].fill(0.0);
+            output[2][32..34].fill(0.0);
+            output[2][36..38].fill(0.0);
             // --- sines and cosines
-            let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1),
-            (s_phi, c_phi), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                joints[3], joints[4], joints[6], joints[7], joints[0], joints[1], pose[2],
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
+            (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
+            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-            // --- leg2
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let k1_leg2 = INV_L_AB / s2_leg2;
-            let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            // --- leg3
-            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-            let k1_leg3 = INV_L_AB / s2_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            let g1_vx_leg3 = c12_leg3 * k1_leg3;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -7755,6 +8412,61 @@ impl DualV {
             let p_x_leg3 = R_P * s_phi;
             let g1_vx_leg1 = c12_leg1 * k1_leg1;
             let p_y_leg1 = R_P * c_phi;
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = rate_1_leg1;
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
+                + s12_leg1 * a_end_y_leg1 + L_AB * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let v2_by_1_y_leg1 = L_AB * c2_leg1;
+            let rate_dot_1_leg1 = k1_leg1
+                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][4] = rate_dot_1_leg1;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let k1_leg2 = INV_L_AB / s2_leg2;
+            let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            output[1][9] = rate_1_leg2;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+                + minus_g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
+                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let v2_by_1_y_leg2 = L_AB * c2_leg2;
+            let rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][5] = rate_dot_1_leg2;
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let k1_leg3 = INV_L_AB / s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][10] = rate_1_leg3;
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
@@ -7770,73 +8482,209 @@ impl DualV {
             let inv_det_ja = 1.0 / det_ja;
             let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
                 * inv_det_ja;
-            let wz_by_a2 = t3 * inv_det_ja;
-            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
-                * inv_det_ja;
-            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
             let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
                 + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
                 * inv_det_ja;
-            let v_arm_x_leg3 = p_y_leg1 * twist[2];
-            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+                + L_AB * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
+                + p_y_leg1 * minus_g2_vx_leg2;
+            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
+            output[0][37] = g2_a1_leg2;
+            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+                + L_AB * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][21] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
+            let wz_by_a2 = t3 * inv_det_ja;
             let minus_vx_by_a2 = t2 * inv_det_ja;
             let vy_by_a2 = t1 * inv_det_ja;
-            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
-            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
+            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
+                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
+            output[1][36] = g2_a2_leg1;
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
+                * inv_det_ja;
+            output[2][48] = -minus_wz_by_a3;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
+            output[1][21] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[0][24] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
+            output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
+            output[1][25] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
+            output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
+            output[0][0] = wz_by_a1 * acceleration[2];
+            output[1][0] = wz_by_a2 * acceleration[2];
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[1][3] = vy_by_a2 * acceleration[1]
+                - minus_vx_by_a2 * acceleration[0];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+            output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2);
+            output[1][32] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            output[0][33] = -::overact::math::wide::signed(
+                g2_a1_leg2,
+                minus_qd_2_leg2,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
+            output[1][48] = off_3_leg1_on_q1_leg2;
+            output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
+            output[2][40] = -(minus_wz_by_a3 * qd_3_leg1);
+            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
+            output[0][45] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg2,
+            );
+            output[2][41] = -(minus_wz_by_a3 * qd_3_leg2);
+            output[1][44] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][44] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg1,
+            );
+            output[2][45] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg2,
+            );
+            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
+            output[2][0] = -minus_zz_platform_on_q1_leg3;
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
-            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-                + minus_g2_vy_leg1 * v_end_y_leg1;
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
-                + s12_leg1 * a_end_y_leg1 + L_AB * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let v2_by_1_y_leg1 = L_AB * c2_leg1;
-            let rate_dot_1_leg1 = k1_leg1
-                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
-            // --- leg2
-            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
-            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
-                + minus_g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
-                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            let v2_by_1_y_leg2 = L_AB * c2_leg2;
-            let rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            // --- leg3
+            output[2][2] = R_P * minus_zz_platform_on_q1_leg3
+                + minus_wz_by_a3_a_x_platform;
+            output[2][3] = -(R_P * minus_wz_by_a3_a_x_platform);
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][1] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
+            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
+            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
+            output[2][1] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+                + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
+                - minus_wz_by_a3 * a_y_platform;
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform);
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][36] = off_2_leg1_on_q1_leg1;
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][32] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1;
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][44] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][37] = off_2_leg2_on_q1_leg2;
+            output[1][29] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2);
+            output[1][33] = -::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                minus_qd_2_leg2,
+            );
+            let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
+            output[1][41] = qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2;
+            output[1][45] = ::overact::math::wide::signed(
+                wz_by_a2_minus_g2_a2_leg2,
+                qd_3_leg2,
+            );
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + L_AB * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            output[2][6] = rate_dot_1_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][38] = g2_a1_leg3;
+            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+                + L_AB * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
+            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
+                - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
+            output[1][38] = g2_a2_leg3;
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
+            output[2][22] = -(g2_a3_leg3 * minus_rate_dot_2_leg3);
+            output[2][26] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3;
+            output[0][26] = -(g2_a1_leg3 * minus_a_on_f1_leg3);
+            output[1][26] = -(g2_a2_leg3 * minus_a_on_f1_leg3);
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[0][34] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][34] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
+            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            output[0][46] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg3,
+            );
+            let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
+            output[1][42] = qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3;
+            output[1][46] = ::overact::math::wide::signed(
+                wz_by_a2_minus_g2_a2_leg3,
+                qd_3_leg3,
+            );
+            let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+            output[2][38] = off_2_leg3_on_q1_leg3;
+            output[2][30] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3);
+            output[2][34] = -::overact::math::wide::signed(
+                off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
+            let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
+            output[2][42] = -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3);
+            output[2][46] = -::overact::math::wide::signed(
+                g2_a3_minus_wz_by_a3_leg3,
+                qd_3_leg3,
+            );
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
@@ -7846,6 +8694,7 @@ impl DualV {
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
             let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
                 + g1_wz_leg4 * wz_by_a1;
+            output[0][19] = g1_a1_leg4;
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -7855,285 +8704,88 @@ impl DualV {
                 + s12_leg4 * a_end_y_leg3 + L_AB * rate_2_squared_leg4;
             let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
-            let v2_by_1_y_leg4 = L_AB * c2_leg4;
-            let rate_dot_1_leg4 = k1_leg4
-                * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
-            let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
-                + g1_wz_leg4 * wz_by_a2;
-            let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-                + L_AB * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
-                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
-                + p_y_leg1 * minus_g2_vx_leg2;
-            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
-            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
-                + L_AB * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
-                + L_AB * rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
-                - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
-            let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
             let g2_a1_leg4 = minus_g2_vy_leg4 * minus_vy_by_a1
                 - minus_g2_vx_leg4 * vx_by_a1 - minus_g2_wz_leg4 * wz_by_a1;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg4;
-            let minus_rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+            output[0][27] = g1_a1_leg4 * a_on_f2_leg4
+                - g2_a1_leg4 * minus_a_on_f1_leg4;
+            let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
+                + g1_wz_leg4 * wz_by_a2;
+            output[1][19] = g1_a2_leg4;
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
+            output[1][27] = g1_a2_leg4 * a_on_f2_leg4
+                - g2_a2_leg4 * minus_a_on_f1_leg4;
+            let v2_by_1_y_leg4 = L_AB * c2_leg4;
+            let rate_dot_1_leg4 = k1_leg4
+                * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+            output[0][7] = g1_a1_leg4 * rate_dot_1_leg4;
+            let minus_rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+            output[0][23] = -(g2_a1_leg4 * minus_rate_dot_2_leg4);
+            let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
+            output[2][19] = -minus_g1_a3_leg4;
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+            output[2][27] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+                + g2_a3_leg4 * minus_a_on_f1_leg4);
+            output[1][7] = g1_a2_leg4 * rate_dot_1_leg4;
+            output[2][7] = -(minus_g1_a3_leg4 * rate_dot_1_leg4);
+            output[0][11] = g1_a1_leg4 * rate_1_leg4;
+            output[1][11] = g1_a2_leg4 * rate_1_leg4;
+            output[2][11] = -(minus_g1_a3_leg4 * rate_1_leg4);
+            output[0][15] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4);
+            output[1][15] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4);
+            output[2][15] = -::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                rate_1_leg4,
+            );
+            output[1][23] = -(g2_a2_leg4 * minus_rate_dot_2_leg4);
+            output[2][23] = -(g2_a3_leg4 * minus_rate_dot_2_leg4);
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
-            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
-            // --- leg3
-            let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
-            let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
-            // --- leg4
+            output[0][39] = off_2_leg4_on_q1_leg1;
+            output[0][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1);
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
+            output[0][47] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg4,
+                qd_3_leg4,
+            );
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2;
+            output[1][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2);
             let wz_by_a2_minus_g2_a2_leg4 = wz_by_a2 - g2_a2_leg4;
+            output[1][43] = qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4;
+            output[1][47] = ::overact::math::wide::signed(
+                wz_by_a2_minus_g2_a2_leg4,
+                qd_3_leg4,
+            );
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3;
+            output[2][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3);
             let g2_a3_minus_wz_by_a3_leg4 = g2_a3_leg4 + minus_wz_by_a3;
-            ::core::result::Result::Ok([
-                [
-                    wz_by_a1 * acceleration[2],
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    vx_by_a1 * inv_r_p_a_arm_x_leg1
-                        + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
-                        - wz_by_a1 * a_x_platform,
-                    vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
-                    rate_dot_1_leg1,
-                    0.0,
-                    0.0,
-                    g1_a1_leg4 * rate_dot_1_leg4,
-                    rate_1_leg1,
-                    0.0,
-                    0.0,
-                    g1_a1_leg4 * rate_1_leg4,
-                    ::overact::math::wide::sign(rate_1_leg1),
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4),
-                    1.0,
-                    0.0,
-                    0.0,
-                    g1_a1_leg4,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                    -(g2_a1_leg2 * minus_rate_dot_2_leg2),
-                    -(g2_a1_leg3 * minus_rate_dot_2_leg3),
-                    -(g2_a1_leg4 * minus_rate_dot_2_leg4),
-                    a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1,
-                    -(g2_a1_leg2 * minus_a_on_f1_leg2),
-                    -(g2_a1_leg3 * minus_a_on_f1_leg3),
-                    g1_a1_leg4 * a_on_f2_leg4 - g2_a1_leg4 * minus_a_on_f1_leg4,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    -(g2_a1_leg2 * minus_qd_2_leg2),
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    -::overact::math::wide::signed(g2_a1_leg2, minus_qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg1,
-                        minus_qd_2_leg4,
-                    ),
-                    off_2_leg1_on_q1_leg1,
-                    g2_a1_leg2,
-                    g2_a1_leg3,
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
-                    qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
-                    qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg2,
-                        qd_3_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg4,
-                        qd_3_leg4,
-                    ),
-                    off_3_leg1_on_q1_leg1,
-                ],
-                [
-                    wz_by_a2 * acceleration[2],
-                    minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform,
-                    -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
-                        + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform),
-                    vy_by_a2 * acceleration[1] - minus_vx_by_a2 * acceleration[0],
-                    0.0,
-                    rate_dot_1_leg2,
-                    0.0,
-                    g1_a2_leg4 * rate_dot_1_leg4,
-                    0.0,
-                    rate_1_leg2,
-                    0.0,
-                    g1_a2_leg4 * rate_1_leg4,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg2),
-                    0.0,
-                    ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4),
-                    0.0,
-                    1.0,
-                    0.0,
-                    g1_a2_leg4,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
-                    -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                    -(g2_a2_leg3 * minus_rate_dot_2_leg3),
-                    -(g2_a2_leg4 * minus_rate_dot_2_leg4),
-                    -(g2_a2_leg1 * minus_a_on_f1_leg1),
-                    a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2,
-                    -(g2_a2_leg3 * minus_a_on_f1_leg3),
-                    g1_a2_leg4 * a_on_f2_leg4 - g2_a2_leg4 * minus_a_on_f1_leg4,
-                    -(g2_a2_leg1 * minus_qd_2_leg1),
-                    -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2),
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    -::overact::math::wide::signed(
-                        off_2_leg2_on_q1_leg2,
-                        minus_qd_2_leg2,
-                    ),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg2,
-                        minus_qd_2_leg4,
-                    ),
-                    g2_a2_leg1,
-                    off_2_leg2_on_q1_leg2,
-                    g2_a2_leg3,
-                    off_2_leg4_on_q1_leg2,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg2,
-                    qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2,
-                    qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3,
-                    qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg2, qd_3_leg1),
-                    ::overact::math::wide::signed(
-                        wz_by_a2_minus_g2_a2_leg2,
-                        qd_3_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a2_minus_g2_a2_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a2_minus_g2_a2_leg4,
-                        qd_3_leg4,
-                    ),
-                    off_3_leg1_on_q1_leg2,
-                ],
-                [
-                    -minus_zz_platform_on_q1_leg3,
-                    minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
-                        + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
-                        - minus_wz_by_a3 * a_y_platform,
-                    R_P * minus_zz_platform_on_q1_leg3 + minus_wz_by_a3_a_x_platform,
-                    -(R_P * minus_wz_by_a3_a_x_platform),
-                    0.0,
-                    0.0,
-                    rate_dot_1_leg3,
-                    -(minus_g1_a3_leg4 * rate_dot_1_leg4),
-                    0.0,
-                    0.0,
-                    rate_1_leg3,
-                    -(minus_g1_a3_leg4 * rate_1_leg4),
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg3),
-                    -::overact::math::wide::signed(minus_g1_a3_leg4, rate_1_leg4),
-                    0.0,
-                    0.0,
-                    1.0,
-                    -minus_g1_a3_leg4,
-                    0.0,
-                    0.0,
-                    -(g2_a3_leg3 * minus_rate_dot_2_leg3),
-                    -(g2_a3_leg4 * minus_rate_dot_2_leg4),
-                    0.0,
-                    0.0,
-                    a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3,
-                    -(minus_g1_a3_leg4 * a_on_f2_leg4
-                        + g2_a3_leg4 * minus_a_on_f1_leg4),
-                    0.0,
-                    0.0,
-                    -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3),
-                    -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3),
-                    0.0,
-                    0.0,
-                    -::overact::math::wide::signed(
-                        off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    -::overact::math::wide::signed(
-                        off_2_leg4_on_q1_leg3,
-                        minus_qd_2_leg4,
-                    ),
-                    0.0,
-                    0.0,
-                    off_2_leg3_on_q1_leg3,
-                    off_2_leg4_on_q1_leg3,
-                    -(minus_wz_by_a3 * qd_3_leg1),
-                    -(minus_wz_by_a3 * qd_3_leg2),
-                    -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3),
-                    -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4),
-                    -::overact::math::wide::signed(minus_wz_by_a3, qd_3_leg1),
-                    -::overact::math::wide::signed(minus_wz_by_a3, qd_3_leg2),
-                    -::overact::math::wide::signed(
-                        g2_a3_minus_wz_by_a3_leg3,
-                        qd_3_leg3,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a3_minus_wz_by_a3_leg4,
-                        qd_3_leg4,
-                    ),
-                    -minus_wz_by_a3,
-                ],
-            ])
+            output[2][43] = -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4);
+            output[2][47] = -::overact::math::wide::signed(
+                g2_a3_minus_wz_by_a3_leg4,
+                qd_3_leg4,
+            );
+            output[0][35] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                minus_qd_2_leg4,
+            );
+            output[1][35] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                minus_qd_2_leg4,
+            );
+            output[2][35] = -::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                minus_qd_2_leg4,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -8158,6 +8810,25 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 49]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -8165,7 +8836,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -8176,6 +8847,30 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][5..7].fill(0.0);
+            output[0][9..11].fill(0.0);
+            output[0][13..15].fill(0.0);
+            output[0][16] = 1.0;
+            output[0][17..19].fill(0.0);
+            output[1][4] = 0.0;
+            output[1][6] = 0.0;
+            output[1][8] = 0.0;
+            output[1][10] = 0.0;
+            output[1][12] = 0.0;
+            output[1][14] = 0.0;
+            output[1][16] = 0.0;
+            output[1][17] = 1.0;
+            output[1][18] = 0.0;
+            output[2][4..6].fill(0.0);
+            output[2][8..10].fill(0.0);
+            output[2][12..14].fill(0.0);
+            output[2][16..18].fill(0.0);
+            output[2][18] = 1.0;
+            output[2][20..22].fill(0.0);
+            output[2][24..26].fill(0.0);
+            output[2][28..30].fill(0.0);
+            output[2][32..34].fill(0.0);
+            output[2][36..38].fill(0.0);
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -8241,12 +8936,64 @@ impl DualV {
             let t3 = p_x_leg3 * t1;
             let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
             let half_per_det_ja = 0.5 / det_ja;
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][48] = wz_by_a3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let vy_by_a3 = t3 * half_per_det_ja;
+            let vx_by_a3 = t2 * half_per_det_ja;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
+                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+                * half_per_det_ja;
+            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][38] = g2_a1_leg3;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
+                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+                * half_per_det_ja;
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][38] = g2_a2_leg3;
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
+            output[1][36] = g2_a2_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][36] = off_2_leg1_on_q1_leg1;
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1;
+            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+            output[1][48] = -minus_off_3_leg1_on_q1_leg2;
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][37] = g2_a1_leg2;
+            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+                + minus_g2_wz_leg2 * minus_wz_by_a2;
+            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[1][37] = off_2_leg2_on_q1_leg2;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -8270,6 +9017,30 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
                 + p_y_leg1 * minus_g1_vx_leg4;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][19] = g1_a1_leg4;
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][19] = g1_a2_leg4;
+            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+            output[2][19] = -minus_g1_a3_leg4;
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+                + g2_wz_leg4 * wz_by_a1;
+            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+            output[0][39] = off_2_leg4_on_q1_leg1;
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2;
+            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3;
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
@@ -8327,11 +9098,9 @@ impl DualV {
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let vy = inv_pivot_2 * t5 - l_3_2 * wz;
             let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
@@ -8342,6 +9111,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[1][9] = -minus_rate_1_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -8349,8 +9119,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -8359,6 +9127,7 @@ impl DualV {
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = rate_1_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -8366,9 +9135,7 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_leg1;
             // --- leg3
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
@@ -8378,6 +9145,7 @@ impl DualV {
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][10] = rate_1_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
@@ -8385,8 +9153,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
@@ -8415,328 +9181,241 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
                 - l_3_2 * t8;
             let dwz = inv_pivot_3 * t9;
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
-            let wz_by_a3 = t1 * half_per_det_ja;
-            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
-                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
-                * half_per_det_ja;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
             let dvx = inv_pivot_1 * t7 - l_2_1 * dvy - l_3_1 * dwz;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
-                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
-                * half_per_det_ja;
-            let vy_by_a3 = t3 * half_per_det_ja;
-            let vx_by_a3 = t2 * half_per_det_ja;
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            let a_end_x_leg3 = dvx - a_arm_x_leg1;
+            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            output[2][27] = -(7.142857142857143
+                * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+            // --- leg3
+            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
+                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][6] = rate_dot_1_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            // --- leg3
-            let a_end_x_leg3 = dvx - a_arm_x_leg1;
-            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
-            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
-                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            output[0][4] = rate_dot_1_leg1;
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            // --- leg2
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[1][5] = -minus_rate_dot_1_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
-                + minus_g2_wz_leg2 * minus_wz_by_a2;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
-            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
-                + g2_wz_leg4 * wz_by_a1;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
+            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][1] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
+            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
+            output[0][0] = wz_by_a1 * dwz;
+            output[1][0] = -(minus_wz_by_a2 * dwz);
+            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][0] = zz_platform_on_q1_leg3;
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
+            output[2][3] = R_P * wz_by_a3_a_x_platform;
+            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
+            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
+            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
+            output[2][15] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
+            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            output[0][15] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            );
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4;
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4;
+            output[1][15] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
+            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
+            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
+            output[0][32] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            output[1][32] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+            output[0][29] = g2_a1_leg2 * qd_2_leg2;
+            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
+            output[1][33] = ::overact::math::wide::signed(
+                off_2_leg2_on_q1_leg2,
+                qd_2_leg2,
+            );
+            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            // --- leg4
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
+            output[2][34] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            output[0][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            );
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
+            output[1][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            );
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
+            output[2][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            );
+            output[0][34] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][34] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][44] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg1,
+                qd_3_leg1,
+            );
+            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
+            output[1][44] = -::overact::math::wide::signed(
+                minus_off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][40] = wz_by_a3 * qd_3_leg1;
+            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
             let qd_3_leg2 = wz - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
+            output[0][45] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg2,
+            );
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            // --- leg3
+            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2);
+            output[1][45] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg2,
+                qd_3_leg2,
+            );
+            output[2][41] = wz_by_a3 * qd_3_leg2;
+            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            // --- leg4
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
             let qd_3_leg4 = wz - rate_2_leg4;
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
+            output[0][46] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg3,
+            );
+            output[0][47] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg4,
+                qd_3_leg4,
+            );
+            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
+            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
+            output[1][46] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg3,
+                qd_3_leg3,
+            );
+            output[1][47] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg4,
+                qd_3_leg4,
+            );
+            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3;
+            output[2][46] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg3,
+            );
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            ::core::result::Result::Ok([
-                [
-                    wz_by_a1 * dwz,
-                    minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform,
-                    vx_by_a1 * inv_r_p_a_arm_x_leg1
-                        + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
-                        - wz_by_a1 * a_x_platform,
-                    vx_by_a1 * dvx - minus_vy_by_a1 * dvy,
-                    rate_dot_1_leg1,
-                    0.0,
-                    0.0,
-                    -(g1_a1_leg4 * minus_rate_dot_1_leg4),
-                    rate_1_leg1,
-                    0.0,
-                    0.0,
-                    -(g1_a1_leg4 * minus_rate_1_leg4),
-                    ::overact::math::wide::sign(rate_1_leg1),
-                    0.0,
-                    0.0,
-                    -::overact::math::wide::signed(g1_a1_leg4, minus_rate_1_leg4),
-                    1.0,
-                    0.0,
-                    0.0,
-                    g1_a1_leg4,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                    g2_a1_leg2 * rate_dot_2_leg2,
-                    -(g2_a1_leg3 * minus_rate_dot_2_leg3),
-                    g2_a1_leg4 * rate_dot_2_leg4,
-                    INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
-                    -(g2_a1_leg2 * a2_x_leg2),
-                    -(g2_a1_leg3 * a2_x_leg3),
-                    g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
-                    -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
-                    g2_a1_leg2 * qd_2_leg2,
-                    -(g2_a1_leg3 * minus_qd_2_leg3),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg1,
-                    -::overact::math::wide::signed(
-                        off_2_leg1_on_q1_leg1,
-                        minus_qd_2_leg1,
-                    ),
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a1_leg3, minus_qd_2_leg3),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
-                    off_2_leg1_on_q1_leg1,
-                    g2_a1_leg2,
-                    g2_a1_leg3,
-                    off_2_leg4_on_q1_leg1,
-                    qd_3_leg1 * off_3_leg1_on_q1_leg1,
-                    qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
-                    qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
-                    qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
-                    ::overact::math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg2,
-                        qd_3_leg2,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a1_minus_g2_a1_leg4,
-                        qd_3_leg4,
-                    ),
-                    off_3_leg1_on_q1_leg1,
-                ],
-                [
-                    -(minus_wz_by_a2 * dwz),
-                    minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                        - vx_by_a2 * inv_r_p_a_arm_y_leg3
-                        - minus_wz_by_a2 * a_y_platform,
-                    vx_by_a2 * inv_r_p_a_arm_x_leg1
-                        + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                        + minus_wz_by_a2 * a_x_platform,
-                    vx_by_a2 * dvx - minus_vy_by_a2 * dvy,
-                    0.0,
-                    -minus_rate_dot_1_leg2,
-                    0.0,
-                    -(g1_a2_leg4 * minus_rate_dot_1_leg4),
-                    0.0,
-                    -minus_rate_1_leg2,
-                    0.0,
-                    -(g1_a2_leg4 * minus_rate_1_leg4),
-                    0.0,
-                    -::overact::math::wide::sign(minus_rate_1_leg2),
-                    0.0,
-                    -::overact::math::wide::signed(g1_a2_leg4, minus_rate_1_leg4),
-                    0.0,
-                    1.0,
-                    0.0,
-                    g1_a2_leg4,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
-                    g2_a2_leg2 * rate_dot_2_leg2,
-                    -(g2_a2_leg3 * minus_rate_dot_2_leg3),
-                    g2_a2_leg4 * rate_dot_2_leg4,
-                    -(g2_a2_leg1 * a2_x_leg1),
-                    INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
-                    -(g2_a2_leg3 * a2_x_leg3),
-                    g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
-                    -(g2_a2_leg1 * minus_qd_2_leg1),
-                    qd_2_leg2 * off_2_leg2_on_q1_leg2,
-                    -(g2_a2_leg3 * minus_qd_2_leg3),
-                    qd_2_leg4 * off_2_leg4_on_q1_leg2,
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    ::overact::math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
-                    -::overact::math::wide::signed(g2_a2_leg3, minus_qd_2_leg3),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
-                    g2_a2_leg1,
-                    off_2_leg2_on_q1_leg2,
-                    g2_a2_leg3,
-                    off_2_leg4_on_q1_leg2,
-                    -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
-                    -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2),
-                    -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3),
-                    -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4),
-                    -::overact::math::wide::signed(
-                        minus_off_3_leg1_on_q1_leg2,
-                        qd_3_leg1,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg2,
-                        qd_3_leg2,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg3,
-                        qd_3_leg3,
-                    ),
-                    -::overact::math::wide::signed(
-                        g2_a2_minus_wz_by_a2_leg4,
-                        qd_3_leg4,
-                    ),
-                    -minus_off_3_leg1_on_q1_leg2,
-                ],
-                [
-                    zz_platform_on_q1_leg3,
-                    wz_by_a3 * a_y_platform
-                        - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                            + vx_by_a3 * inv_r_p_a_arm_y_leg3),
-                    -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform),
-                    R_P * wz_by_a3_a_x_platform,
-                    0.0,
-                    0.0,
-                    rate_dot_1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_dot_1_leg4,
-                    0.0,
-                    0.0,
-                    rate_1_leg3,
-                    minus_g1_a3_leg4 * minus_rate_1_leg4,
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg3),
-                    ::overact::math::wide::signed(
-                        minus_g1_a3_leg4,
-                        minus_rate_1_leg4,
-                    ),
-                    0.0,
-                    0.0,
-                    1.0,
-                    -minus_g1_a3_leg4,
-                    0.0,
-                    0.0,
-                    minus_g2_a3_leg3 * minus_rate_dot_2_leg3,
-                    g2_a3_leg4 * rate_dot_2_leg4,
-                    0.0,
-                    0.0,
-                    INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
-                    -(7.142857142857143
-                        * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                            + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
-                    0.0,
-                    0.0,
-                    minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
-                    qd_2_leg4 * off_2_leg4_on_q1_leg3,
-                    0.0,
-                    0.0,
-                    ::overact::math::wide::signed(
-                        minus_off_2_leg3_on_q1_leg3,
-                        minus_qd_2_leg3,
-                    ),
-                    ::overact::math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
-                    0.0,
-                    0.0,
-                    -minus_off_2_leg3_on_q1_leg3,
-                    off_2_leg4_on_q1_leg3,
-                    wz_by_a3 * qd_3_leg1,
-                    wz_by_a3 * qd_3_leg2,
-                    qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3,
-                    qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4,
-                    ::overact::math::wide::signed(wz_by_a3, qd_3_leg1),
-                    ::overact::math::wide::signed(wz_by_a3, qd_3_leg2),
-                    ::overact::math::wide::signed(
-                        wz_by_a3_minus_g2_a3_leg3,
-                        qd_3_leg3,
-                    ),
-                    ::overact::math::wide::signed(
-                        wz_by_a3_minus_g2_a3_leg4,
-                        qd_3_leg4,
-                    ),
-                    wz_by_a3,
-                ],
-            ])
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
+            output[2][47] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg4,
+                qd_3_leg4,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// The payload's columns of case 1, eq. (38).
@@ -8758,6 +9437,23 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_payload_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_payload`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_payload_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 4]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
@@ -8765,23 +9461,32 @@ impl DualV {
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
+        output[0][0] = 0.0;
+        output[0][3] = acceleration[0];
+        output[1][0] = 0.0;
+        output[1][3] = acceleration[1];
+        output[2][0] = acceleration[2];
+        output[2][3] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- platform
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][1] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][2] = -a_x_platform;
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][1] = -minus_mx_payload_on_vx;
+        output[1][2] = -minus_mx_payload_on_vx;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        ::core::result::Result::Ok([
-            [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
-            [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
-            [acceleration[2], a_y_platform, -a_x_platform, 0.0],
-        ])
+        output[0][2] = my_payload_on_vx;
+        output[1][1] = -my_payload_on_vx;
+        ::core::result::Result::Ok(())
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -8804,6 +9509,25 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_payload_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_payload_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_payload_from_joints_into(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 4]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
@@ -8814,23 +9538,32 @@ impl DualV {
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
+        output[0][0] = 0.0;
+        output[0][3] = acceleration[0];
+        output[1][0] = 0.0;
+        output[1][3] = acceleration[1];
+        output[2][0] = acceleration[2];
+        output[2][3] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- platform
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][1] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][2] = -a_x_platform;
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][1] = -minus_mx_payload_on_vx;
+        output[1][2] = -minus_mx_payload_on_vx;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        ::core::result::Result::Ok([
-            [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
-            [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
-            [acceleration[2], a_y_platform, -a_x_platform, 0.0],
-        ])
+        output[0][2] = my_payload_on_vx;
+        output[1][1] = -my_payload_on_vx;
+        ::core::result::Result::Ok(())
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -8854,6 +9587,25 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_payload_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_payload_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_payload_from_actuators_into(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 4]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -8861,7 +9613,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / r_p
             const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
             /// l_ab²
@@ -8870,6 +9622,9 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            output[0][0] = 0.0;
+            output[1][0] = 0.0;
+            output[2][3] = 0.0;
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -9092,20 +9847,25 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
+            output[2][0] = dwz;
+            let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+            output[1][3] = dvy;
+            let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
+            output[0][3] = dvx;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][1] = a_y_platform;
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            output[2][2] = -a_x_platform;
             // --- leg1
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][1] = -minus_mx_payload_on_vx;
+            output[1][2] = -minus_mx_payload_on_vx;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
-            let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
-            let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            ::core::result::Result::Ok([
-                [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, dvx],
-                [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, dvy],
-                [dwz, a_y_platform, -a_x_platform, 0.0],
-            ])
+            output[0][2] = my_payload_on_vx;
+            output[1][1] = -my_payload_on_vx;
+            ::core::result::Result::Ok(())
         })
     }
     /// The payload's columns of case 2, eq. (38).
@@ -9127,6 +9887,23 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_payload_actuators_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_payload_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_payload_actuators_into(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        output: &mut [[::core::primitive::f64; 4]; 3],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
@@ -9198,57 +9975,49 @@ impl DualV {
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
-        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-            * half_per_det_ja;
-        let wz_by_a3 = t1 * half_per_det_ja;
-        let zz_payload_on_q1_leg3 = wz_by_a3 * acceleration[2];
+        output[0][0] = wz_by_a1 * acceleration[2];
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
         let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
             * half_per_det_ja;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[0][3] = vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1];
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
             * half_per_det_ja;
         let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
             * half_per_det_ja;
+        output[1][3] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1];
+        let wz_by_a3 = t1 * half_per_det_ja;
+        let zz_payload_on_q1_leg3 = wz_by_a3 * acceleration[2];
+        output[2][0] = zz_payload_on_q1_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         let vy_by_a3 = p_x_leg3 * wz_by_a3;
         let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        output[2][1] = wz_by_a3 * a_y_platform
+            - (vy_by_a3 * inv_r_p_a_arm_x_leg1 + vx_by_a3 * inv_r_p_a_arm_y_leg3);
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-        ::core::result::Result::Ok([
-            [
-                wz_by_a1 * acceleration[2],
-                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
-                    + wz_by_a1 * a_y_platform,
-                vx_by_a1 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
-                    - wz_by_a1 * a_x_platform,
-                vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
-            ],
-            [
-                -(minus_wz_by_a2 * acceleration[2]),
-                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
-                    - minus_wz_by_a2 * a_y_platform,
-                vx_by_a2 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                    + minus_wz_by_a2 * a_x_platform,
-                vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1],
-            ],
-            [
-                zz_payload_on_q1_leg3,
-                wz_by_a3 * a_y_platform
-                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
-                -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform),
-                R_P * wz_by_a3_a_x_platform,
-            ],
-        ])
+        output[2][2] = -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform);
+        output[2][3] = R_P * wz_by_a3_a_x_platform;
+        output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+        output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+        output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+        output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform;
+        ::core::result::Result::Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -9507,7 +10276,6 @@ impl DualV {
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -10717,7 +11485,6 @@ impl DualV {
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -11806,7 +12573,6 @@ impl DualV {
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 68],
@@ -12226,7 +12992,6 @@ impl DualV {
             &[("pose", pose), ("base_parameters", base_parameters)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             base_parameters: &'a [::core::primitive::f64; 53],
@@ -12646,7 +13411,6 @@ impl DualV {
             &[("pose", pose), ("twist", twist), ("parameters", parameters)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -12889,7 +13653,6 @@ impl DualV {
             &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -13124,7 +13887,6 @@ impl DualV {
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -13460,7 +14222,6 @@ impl DualV {
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -14629,50 +15390,56 @@ impl ::overact::Model for DualV {
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform(
+                    .fill(|row, output| Self::idm_red_platform_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators(
+                    .fill(|row, output| Self::idm_red_actuators_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform_base(
+                    .fill(|row, output| Self::idm_red_platform_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators_base(
+                    .fill(|row, output| Self::idm_red_actuators_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPayload => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_payload(
+                    .fill(|row, output| Self::idm_red_payload_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPayloadActuators => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_payload_actuators(
+                    .fill(|row, output| Self::idm_red_payload_actuators_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::ProjectPlatform => {

@@ -31,6 +31,8 @@
 /// | `forward_dynamics_base` | 6, 1 sg, 1 gd |  |
 /// | `project_torques` | 0 |  |
 ///
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -276,18 +278,34 @@ impl Emps {
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_into(
+            joints,
+            joint_velocities,
+            joint_accelerations,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_into(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+        output: &mut [[::core::primitive::f64; 5]; 1],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("joints", joints), ("joint_velocities", joint_velocities),
                 ("joint_accelerations", joint_accelerations),
             ],
         )?;
-        ::core::result::Result::Ok([
-            [
-                joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0,
-            ],
-        ])
+        output[0][0..2].fill(joint_accelerations[0]);
+        output[0][2] = joint_velocities[0];
+        output[0][4] = 1.0;
+        output[0][3] = ::overact::math::sign(joint_velocities[0]);
+        ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -308,18 +326,34 @@ impl Emps {
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_into(
+            joints,
+            joint_velocities,
+            joint_accelerations,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_into(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+        output: &mut [[::core::primitive::f64; 4]; 1],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("joints", joints), ("joint_velocities", joint_velocities),
                 ("joint_accelerations", joint_accelerations),
             ],
         )?;
-        ::core::result::Result::Ok([
-            [
-                joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0,
-            ],
-        ])
+        output[0][0] = joint_accelerations[0];
+        output[0][1] = joint_velocities[0];
+        output[0][3] = 1.0;
+        output[0][2] = ::overact::math::sign(joint_velocities[0]);
+        ::core::result::Result::Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -674,18 +708,20 @@ impl ::overact::Model for Emps {
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform(
+                    .fill(|row, output| Self::idm_red_platform_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform_base(
+                    .fill(|row, output| Self::idm_red_platform_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::ProjectPlatform => {

@@ -54,6 +54,8 @@
 /// | `forward_dynamics_base` | 220, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -1139,10 +1141,27 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -1157,6 +1176,10 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            output[0][24] = acceleration[0];
+            // --- platform
+            let m_platform_on_vy = acceleration[1] + 9.81;
+            output[1][24] = m_platform_on_vy;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -1167,52 +1190,89 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             let k_left = 1.0 / det_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            output[1][6] = -minus_g1_vy_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[1][1] = -(minus_g1_vy_left * a1_y_left);
+            let a1_x_left = 49.05 * l1_y_left;
+            output[1][2] = minus_g1_vy_left * a1_x_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][6] = -minus_g1_vx_left;
+            output[0][1] = -(minus_g1_vx_left * a1_y_left);
+            output[0][2] = minus_g1_vx_left * a1_x_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            output[0][4] = minus_g1_vx_left * minus_rate_1_left;
+            output[1][4] = minus_g1_vy_left * minus_rate_1_left;
+            output[0][5] = ::overact::math::wide::signed(
+                minus_g1_vx_left,
+                minus_rate_1_left,
+            );
+            output[1][5] = ::overact::math::wide::signed(
+                minus_g1_vy_left,
+                minus_rate_1_left,
+            );
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][11] = d_x_left * t2_left;
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let a_on_f1_left = l2_x_left * acceleration[0]
                 + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            let minus_rate_1_left = minus_g1_vx_left * twist[0]
-                + minus_g1_vy_left * twist[1];
             let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-            let t2_left = rho_squared_left - 0.1025;
-            let t3_left = 0.5 * t2_left;
+            let t3_left = rho_squared_left - 0.1025;
+            let t4_left = 0.5 * t3_left;
             let minus_rate_dot_1_left = k_left
-                * (a_on_f1_left + rate_1_squared_left * t3_left);
-            let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
-            let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
-            let a1_y_left = 49.05 * l1_x_left;
-            let a1_x_left = 49.05 * l1_y_left;
+                * (a_on_f1_left + rate_1_squared_left * t4_left);
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-            let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
-            let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
-            let inv_l_2_dvx = INV_L_2 * acceleration[0];
             let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
                 - L_1 * minus_rate_dot_1_left;
-            let t4_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
-            let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
-            let m_platform_on_vy = acceleration[1] + 9.81;
-            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-            let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
             let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-            let c2_left = INV_HALF * t2_left;
+            let c2_left = INV_HALF * t3_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-            let qd_2_left = minus_rate_1_left + rate_2_left;
-            let t5_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                + g2_vx_left * a2_x_left);
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t4_left);
+            let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
+            output[0][7] = zz_2_left_on_vx;
+            output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                + g2_vy_left * a2_x_left);
+            let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
+            output[1][7] = zz_2_left_on_vy;
+            output[1][11] = pose[1] * t2_left;
+            let t5_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
+            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+            let minus_m_2_left_on_vy = minus_g1_vy_left * t5_left;
+            output[1][10] = -minus_m_2_left_on_vy;
+            output[1][8] = inv_l_2_m_platform_on_vy
+                - 0.16
+                    * (1.5625 * zz_2_left_on_vy
+                        - INV_L_1_SQUARED * minus_m_2_left_on_vy);
+            let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
+            output[1][0] = zz_1_left_on_vy;
+            output[1][3] = zz_1_left_on_vy;
+            let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
+            output[0][0] = zz_1_left_on_vx;
+            output[0][3] = zz_1_left_on_vx;
+            let inv_l_2_dvx = INV_L_2 * acceleration[0];
+            let minus_m_2_left_on_vx = minus_g1_vx_left * t5_left;
+            output[0][10] = -minus_m_2_left_on_vx;
+            output[0][8] = inv_l_2_dvx
+                - 0.16
+                    * (1.5625 * zz_2_left_on_vx
+                        - INV_L_1_SQUARED * minus_m_2_left_on_vx);
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1223,120 +1283,81 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
-            let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            output[1][18] = g1_vy_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = g1_vy_right * a1_y_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][14] = -(g1_vy_right * a1_x_right);
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            output[0][18] = g1_vx_right;
+            output[0][13] = g1_vx_right * a1_y_right;
+            output[0][14] = -(g1_vx_right * a1_x_right);
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[0][16] = g1_vx_right * rate_1_right;
+            output[1][16] = g1_vy_right * rate_1_right;
+            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
+            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let t2_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
+            output[0][23] = d_x_right * t2_right;
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
-            let g1_vy_right = l2_y_right * k_right;
-            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             let rate_1_squared_right = rate_1_right * rate_1_right;
-            let t2_right = rho_squared_right - 0.1025;
-            let t3_right = 0.5 * t2_right;
+            let t3_right = rho_squared_right - 0.1025;
+            let t4_right = 0.5 * t3_right;
             let rate_dot_1_right = k_right
-                * (a_on_f1_right + rate_1_squared_right * t3_right);
-            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
-            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
-            let a1_y_right = 49.05 * l1_x_right;
-            let a1_x_right = 49.05 * l1_y_right;
+                * (a_on_f1_right + rate_1_squared_right * t4_right);
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-            let minus_rate_dot_2_right = k_right
-                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-            let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
-            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
             let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-            let t4_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
-            let m_2_right_on_vx = g1_vx_right * t4_right;
-            let m_2_right_on_vy = g1_vy_right * t4_right;
             let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-            let c2_right = INV_HALF * t2_right;
+            let c2_right = INV_HALF * t3_right;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let t5_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
-            ::core::result::Result::Ok([
-                [
-                    zz_1_left_on_vx, -(minus_g1_vx_left * a1_y_left), minus_g1_vx_left * a1_x_left,
-                    zz_1_left_on_vx, minus_g1_vx_left * minus_rate_1_left,
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_left,
-                        minus_rate_1_left,
-                    ),
-                    -minus_g1_vx_left,
-                    zz_2_left_on_vx,
-                    inv_l_2_dvx
-                        - 0.16
-                            * (1.5625 * zz_2_left_on_vx
-                                - INV_L_1_SQUARED * minus_m_2_left_on_vx),
-                    -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                        + g2_vx_left * a2_x_left),
-                    -minus_m_2_left_on_vx,
-                    d_x_left * t5_left,
-                    zz_1_right_on_vx,
-                    g1_vx_right * a1_y_right,
-                    -(g1_vx_right * a1_x_right),
-                    zz_1_right_on_vx,
-                    g1_vx_right * rate_1_right,
-                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
-                    g1_vx_right,
-                    zz_2_right_on_vx,
-                    inv_l_2_dvx
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vx
-                                + 1.5625 * zz_2_right_on_vx),
-                    g1_vx_right * minus_inv_l_2_a_on_f2_right
-                        + minus_g2_vx_right * a2_x_right,
-                    m_2_right_on_vx,
-                    d_x_right * t5_right,
-                    acceleration[0],
-                ],
-                [
-                    zz_1_left_on_vy, -(minus_g1_vy_left * a1_y_left), minus_g1_vy_left * a1_x_left,
-                    zz_1_left_on_vy, minus_g1_vy_left * minus_rate_1_left,
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_left,
-                        minus_rate_1_left,
-                    ),
-                    -minus_g1_vy_left,
-                    zz_2_left_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        - 0.16
-                            * (1.5625 * zz_2_left_on_vy
-                                - INV_L_1_SQUARED * minus_m_2_left_on_vy),
-                    -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                        + g2_vy_left * a2_x_left),
-                    -minus_m_2_left_on_vy,
-                    pose[1] * t5_left,
-                    zz_1_right_on_vy,
-                    g1_vy_right * a1_y_right,
-                    -(g1_vy_right * a1_x_right),
-                    zz_1_right_on_vy,
-                    g1_vy_right * rate_1_right,
-                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
-                    g1_vy_right,
-                    zz_2_right_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vy
-                                + 1.5625 * zz_2_right_on_vy),
-                    g1_vy_right * minus_inv_l_2_a_on_f2_right
-                        + minus_g2_vy_right * a2_x_right,
-                    m_2_right_on_vy,
-                    pose[1] * t5_right,
-                    m_platform_on_vy,
-                ],
-            ])
+            output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t4_right);
+            let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+            output[0][19] = zz_2_right_on_vx;
+            output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right;
+            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+            output[1][19] = zz_2_right_on_vy;
+            let t5_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            let m_2_right_on_vx = g1_vx_right * t5_right;
+            output[0][22] = m_2_right_on_vx;
+            output[0][20] = inv_l_2_dvx
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vx
+                        + 1.5625 * zz_2_right_on_vx);
+            let m_2_right_on_vy = g1_vy_right * t5_right;
+            output[1][22] = m_2_right_on_vy;
+            output[1][20] = inv_l_2_m_platform_on_vy
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vy
+                        + 1.5625 * zz_2_right_on_vy);
+            output[1][23] = pose[1] * t2_right;
+            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+            output[0][12] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx;
+            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+            output[1][12] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -1360,13 +1381,32 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
             /// 1 / l_1²
@@ -1379,6 +1419,7 @@ impl FiveBar {
             const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
             /// l_2
             const L_2: ::core::primitive::f64 = 0.25;
+            output[0][24] = acceleration[0];
             // --- sines and cosines
             let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
             (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
@@ -1386,11 +1427,27 @@ impl FiveBar {
             ]);
             ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
             ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            let m_platform_on_vy = acceleration[1] + 9.81;
+            output[1][24] = m_platform_on_vy;
             // --- left
             let c12_left = c1_left * c2_left - s1_left * s2_left;
-            let s12_left = s1_left * c2_left + c1_left * s2_left;
             let k1_left = INV_L_1 / s2_left;
             let g1_vx_left = c12_left * k1_left;
+            output[0][6] = g1_vx_left;
+            let a1_y_left = 9.81 * c1_left;
+            output[0][1] = g1_vx_left * a1_y_left;
+            let a1_x_left = 9.81 * s1_left;
+            output[0][2] = -(g1_vx_left * a1_x_left);
+            let s12_left = s1_left * c2_left + c1_left * s2_left;
+            let g1_vy_left = s12_left * k1_left;
+            output[1][6] = g1_vy_left;
+            output[1][2] = -(g1_vy_left * a1_x_left);
+            output[1][1] = g1_vy_left * a1_y_left;
+            let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
+            output[0][4] = g1_vx_left * rate_1_left;
+            output[1][4] = g1_vy_left * rate_1_left;
+            output[0][5] = ::overact::math::wide::signed(g1_vx_left, rate_1_left);
+            output[1][5] = ::overact::math::wide::signed(g1_vy_left, rate_1_left);
             let k2_left = k1_left * L_1_PER_L_2;
             let minus_g2_vx_left = c1_left * k2_left;
             let minus_g2_vy_left = s1_left * k2_left;
@@ -1400,38 +1457,73 @@ impl FiveBar {
             let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
             let a_on_f1_left = c12_left * acceleration[0]
                 + s12_left * acceleration[1] + l_2_rate_2_squared_left;
-            let g1_vy_left = s12_left * k1_left;
-            let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
             let rate_1_squared_left = rate_1_left * rate_1_left;
             let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
             let rate_dot_1_left = k1_left
                 * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
-            let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
-            let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
-            let a1_y_left = 9.81 * c1_left;
-            let a1_x_left = 9.81 * s1_left;
             let minus_a_on_f2_left = c1_left * acceleration[0]
                 + s1_left * acceleration[1] + l_1_rate_1_squared_left;
             let minus_rate_dot_2_left = k2_left
                 * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-            let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
             let zz_2_left_on_vy = minus_g2_vy_left * minus_rate_dot_2_left;
-            let inv_l_2_dvx = INV_L_2 * acceleration[0];
+            output[1][7] = zz_2_left_on_vy;
             let t1_left = L_1 * (a1_y_left + L_1 * rate_dot_1_left);
-            let m_2_left_on_vx = g1_vx_left * t1_left;
-            let m_platform_on_vy = acceleration[1] + 9.81;
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let m_2_left_on_vy = g1_vy_left * t1_left;
+            output[1][10] = m_2_left_on_vy;
+            output[1][8] = inv_l_2_m_platform_on_vy
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy);
             let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
             let a2_x_left = a_on_f1_left + s12_left * 9.81;
-            let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+            output[0][9] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+                + minus_g2_vx_left * a2_x_left;
+            output[1][9] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+                + minus_g2_vy_left * a2_x_left;
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
             let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+            output[1][11] = ::overact::math::wide::signed(
+                minus_gq2_vy_left,
+                minus_qd_2_left,
+            );
+            let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+            output[0][11] = ::overact::math::wide::signed(
+                minus_gq2_vx_left,
+                minus_qd_2_left,
+            );
+            let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
+            output[0][7] = zz_2_left_on_vx;
+            let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
+            output[1][0] = zz_1_left_on_vy;
+            output[1][3] = zz_1_left_on_vy;
+            let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
+            output[0][0] = zz_1_left_on_vx;
+            output[0][3] = zz_1_left_on_vx;
+            let inv_l_2_dvx = INV_L_2 * acceleration[0];
+            let m_2_left_on_vx = g1_vx_left * t1_left;
+            output[0][10] = m_2_left_on_vx;
+            output[0][8] = inv_l_2_dvx
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx);
             // --- right
             let c12_right = c1_right * c2_right - s1_right * s2_right;
-            let s12_right = s1_right * c2_right + c1_right * s2_right;
             let k1_right = INV_L_1 / s2_right;
             let g1_vx_right = c12_right * k1_right;
+            output[0][18] = g1_vx_right;
+            let a1_y_right = 9.81 * c1_right;
+            output[0][13] = g1_vx_right * a1_y_right;
+            let a1_x_right = 9.81 * s1_right;
+            output[0][14] = -(g1_vx_right * a1_x_right);
+            let s12_right = s1_right * c2_right + c1_right * s2_right;
+            let g1_vy_right = s12_right * k1_right;
+            output[1][18] = g1_vy_right;
+            output[1][14] = -(g1_vy_right * a1_x_right);
+            output[1][13] = g1_vy_right * a1_y_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[0][16] = g1_vx_right * rate_1_right;
+            output[1][16] = g1_vy_right * rate_1_right;
+            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
+            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
             let k2_right = L_1_PER_L_2 * k1_right;
             let minus_g2_vx_right = c1_right * k2_right;
             let minus_g2_vy_right = s1_right * k2_right;
@@ -1441,106 +1533,55 @@ impl FiveBar {
             let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
             let a_on_f1_right = c12_right * acceleration[0]
                 + s12_right * acceleration[1] + l_2_rate_2_squared_right;
-            let g1_vy_right = s12_right * k1_right;
-            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
             let rate_dot_1_right = k1_right
                 * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
-            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
-            let a1_y_right = 9.81 * c1_right;
-            let a1_x_right = 9.81 * s1_right;
             let minus_a_on_f2_right = c1_right * acceleration[0]
                 + s1_right * acceleration[1] + l_1_rate_1_squared_right;
             let minus_rate_dot_2_right = k2_right
                 * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
             let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
-            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+            output[0][19] = zz_2_right_on_vx;
             let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
             let m_2_right_on_vx = g1_vx_right * t1_right;
+            output[0][22] = m_2_right_on_vx;
+            output[0][20] = inv_l_2_dvx
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vx
+                        + 1.5625 * zz_2_right_on_vx);
+            let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+            output[1][19] = zz_2_right_on_vy;
             let m_2_right_on_vy = g1_vy_right * t1_right;
+            output[1][22] = m_2_right_on_vy;
+            output[1][20] = inv_l_2_m_platform_on_vy
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vy
+                        + 1.5625 * zz_2_right_on_vy);
             let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
             let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+            output[0][21] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right;
+            output[1][21] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right;
             let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            output[0][23] = ::overact::math::wide::signed(
+                minus_gq2_vx_right,
+                minus_qd_2_right,
+            );
             let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-            ::core::result::Result::Ok([
-                [
-                    zz_1_left_on_vx, g1_vx_left * a1_y_left, -(g1_vx_left * a1_x_left),
-                    zz_1_left_on_vx, g1_vx_left * rate_1_left,
-                    ::overact::math::wide::signed(g1_vx_left, rate_1_left), g1_vx_left,
-                    zz_2_left_on_vx,
-                    inv_l_2_dvx
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_left_on_vx
-                                + 1.5625 * zz_2_left_on_vx),
-                    g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
-                        + minus_g2_vx_left * a2_x_left,
-                    m_2_left_on_vx,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_left,
-                        minus_qd_2_left,
-                    ),
-                    zz_1_right_on_vx,
-                    g1_vx_right * a1_y_right,
-                    -(g1_vx_right * a1_x_right),
-                    zz_1_right_on_vx,
-                    g1_vx_right * rate_1_right,
-                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
-                    g1_vx_right,
-                    zz_2_right_on_vx,
-                    inv_l_2_dvx
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vx
-                                + 1.5625 * zz_2_right_on_vx),
-                    g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
-                        + minus_g2_vx_right * a2_x_right,
-                    m_2_right_on_vx,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vx_right,
-                        minus_qd_2_right,
-                    ),
-                    acceleration[0],
-                ],
-                [
-                    zz_1_left_on_vy, g1_vy_left * a1_y_left, -(g1_vy_left * a1_x_left),
-                    zz_1_left_on_vy, g1_vy_left * rate_1_left,
-                    ::overact::math::wide::signed(g1_vy_left, rate_1_left), g1_vy_left,
-                    zz_2_left_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_left_on_vy
-                                + 1.5625 * zz_2_left_on_vy),
-                    g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
-                        + minus_g2_vy_left * a2_x_left,
-                    m_2_left_on_vy,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_left,
-                        minus_qd_2_left,
-                    ),
-                    zz_1_right_on_vy,
-                    g1_vy_right * a1_y_right,
-                    -(g1_vy_right * a1_x_right),
-                    zz_1_right_on_vy,
-                    g1_vy_right * rate_1_right,
-                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
-                    g1_vy_right,
-                    zz_2_right_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vy
-                                + 1.5625 * zz_2_right_on_vy),
-                    g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
-                        + minus_g2_vy_right * a2_x_right,
-                    m_2_right_on_vy,
-                    ::overact::math::wide::signed(
-                        minus_gq2_vy_right,
-                        minus_qd_2_right,
-                    ),
-                    m_platform_on_vy,
-                ],
-            ])
+            output[1][23] = ::overact::math::wide::signed(
+                minus_gq2_vy_right,
+                minus_qd_2_right,
+            );
+            let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+            output[0][12] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx;
+            let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+            output[1][12] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -1564,6 +1605,25 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_actuators_into(
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -1571,7 +1631,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_1²
@@ -1594,19 +1654,45 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             let k_left = 1.0 / det_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
-            let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
+            output[1][6] = -minus_g1_vy_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
+            output[1][1] = -(minus_g1_vy_left * bias_a1_y_left);
+            output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]);
+            output[1][5] = -::overact::math::wide::signed(
+                minus_g1_vy_left,
+                actuator_velocities[0],
+            );
+            let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
+            output[1][0] = -minus_zz_1_left_on_vy;
+            output[1][3] = -minus_zz_1_left_on_vy;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][6] = -minus_g1_vx_left;
+            output[0][1] = -(minus_g1_vx_left * bias_a1_y_left);
+            output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]);
+            output[0][5] = -::overact::math::wide::signed(
+                minus_g1_vx_left,
+                actuator_velocities[0],
+            );
+            let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
+            output[0][0] = -minus_zz_1_left_on_vx;
+            output[0][3] = -minus_zz_1_left_on_vx;
             let bias_a1_x_left = 49.05 * l1_y_left;
-            let g2_vx_left = l1_x_left * k_left;
+            output[0][2] = minus_g1_vx_left * bias_a1_x_left;
+            output[1][2] = minus_g1_vy_left * bias_a1_x_left;
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            let t2_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+            let minus_m_2_left_on_vx = minus_g1_vx_left * t2_left;
+            output[0][10] = -minus_m_2_left_on_vx;
+            let minus_m_2_left_on_vy = minus_g1_vy_left * t2_left;
+            output[1][10] = -minus_m_2_left_on_vy;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1622,9 +1708,41 @@ impl FiveBar {
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
+            output[1][18] = g1_vy_right;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = g1_vy_right * bias_a1_y_right;
+            output[1][16] = g1_vy_right * actuator_velocities[1];
+            output[1][17] = ::overact::math::wide::signed(
+                g1_vy_right,
+                actuator_velocities[1],
+            );
+            let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
+            output[1][12] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
+            output[0][18] = g1_vx_right;
+            output[0][13] = g1_vx_right * bias_a1_y_right;
+            output[0][16] = g1_vx_right * actuator_velocities[1];
+            output[0][17] = ::overact::math::wide::signed(
+                g1_vx_right,
+                actuator_velocities[1],
+            );
+            let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
+            output[0][12] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[0][14] = -(g1_vx_right * bias_a1_x_right);
+            output[1][14] = -(g1_vy_right * bias_a1_x_right);
+            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+                + L_1 * actuator_accelerations[1];
+            let t2_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+            let m_2_right_on_vx = g1_vx_right * t2_right;
+            output[0][22] = m_2_right_on_vx;
+            let m_2_right_on_vy = g1_vy_right * t2_right;
+            output[1][22] = m_2_right_on_vy;
+            let g2_vx_left = l1_x_left * k_left;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 t1,
@@ -1639,33 +1757,42 @@ impl FiveBar {
             let minus_vx = t2
                 * (g1_vy_right * actuator_velocities[0]
                     + minus_g1_vy_left * actuator_velocities[1]);
-            // --- left
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let t3_left = ::overact::math::wide::sign(qd_2_left) / det_left;
+            output[0][11] = d_x_left * t3_left;
+            output[1][11] = pose[1] * t3_left;
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            output[0][23] = -(d_x_right * t3_right);
+            output[1][23] = -(pose[1] * t3_right);
+            // --- left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
-            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let t4_left = 0.5 * (rho_squared_left - 0.1025);
             let minus_bias_rate_dot_1_left = k_left
-                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+                * (bias_a_on_f1_left + rate_1_squared_left * t4_left);
             let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_left;
             // --- right
-            let minus_g2_vx_right = l1_x_right * k_right;
-            let minus_g2_vy_right = l1_y_right * k_right;
-            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
-            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let t4_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
-                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+                * (bias_a_on_f1_right + rate_1_squared_right * t4_right);
             let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
                 - bias_rate_dot_1_right;
             let minus_dvx = t2
                 * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+            output[0][24] = -minus_dvx;
             let dvy = t2
                 * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
@@ -1673,127 +1800,61 @@ impl FiveBar {
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
             let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
                 - minus_bias_a_on_f2_left;
-            let minus_rate_dot_2_left = k_left
-                * (a_on_f2_left - rate_2_squared_left * t2_left);
-            let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
-            let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
-            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-                + L_1 * actuator_accelerations[0];
-            let t3_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
-            let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
-            let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
-            let m_platform_on_vy = dvy + 9.81;
-            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-            let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
             let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
-            let c2_left = t2_left * 20.0;
+            let c2_left = t4_left * 20.0;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-            let qd_2_left = rate_2_left - actuator_velocities[0];
-            let t4_left = ::overact::math::wide::sign(qd_2_left) / det_left;
+            output[0][9] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+                - g2_vx_left * a2_x_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t4_left);
+            let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
+            output[0][7] = -minus_zz_2_left_on_vx;
+            output[1][9] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+                - g2_vy_left * a2_x_left;
             // --- right
-            let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
-            let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            let bias_a1_x_right = 49.05 * l1_y_right;
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
-            let rate_dot_2_right = k_right
-                * (a_on_f2_right - rate_2_squared_right * t2_right);
-            let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
-            let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
-            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-                + L_1 * actuator_accelerations[1];
-            let t3_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
-            let m_2_right_on_vx = g1_vx_right * t3_right;
-            let m_2_right_on_vy = g1_vy_right * t3_right;
-            let c2_right = t2_right * 20.0;
+            let c2_right = t4_right * 20.0;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * bias_a1_y_plus_l_1_qdd1_right;
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            ::core::result::Result::Ok([
-                [
-                    -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
-                    minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx,
-                    -(minus_g1_vx_left * actuator_velocities[0]),
-                    -::overact::math::wide::signed(
-                        minus_g1_vx_left,
-                        actuator_velocities[0],
-                    ),
-                    -minus_g1_vx_left,
-                    -minus_zz_2_left_on_vx,
-                    0.16
-                        * (INV_L_1_SQUARED * minus_m_2_left_on_vx
-                            + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx,
-                    minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
-                    -minus_m_2_left_on_vx,
-                    d_x_left * t4_left,
-                    zz_1_right_on_vx,
-                    g1_vx_right * bias_a1_y_right,
-                    -(g1_vx_right * bias_a1_x_right),
-                    zz_1_right_on_vx,
-                    g1_vx_right * actuator_velocities[1],
-                    ::overact::math::wide::signed(
-                        g1_vx_right,
-                        actuator_velocities[1],
-                    ),
-                    g1_vx_right,
-                    -minus_zz_2_right_on_vx,
-                    -(minus_inv_l_2_dvx
-                        + 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vx
-                                - 1.5625 * minus_zz_2_right_on_vx)),
-                    minus_g2_vx_right * a2_x_right
-                        - g1_vx_right * inv_l_2_a_on_f2_right,
-                    m_2_right_on_vx,
-                    -(d_x_right * t4_right),
-                    -minus_dvx,
-                ],
-                [
-                    -minus_zz_1_left_on_vy, -(minus_g1_vy_left * bias_a1_y_left),
-                    minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy,
-                    -(minus_g1_vy_left * actuator_velocities[0]),
-                    -::overact::math::wide::signed(
-                        minus_g1_vy_left,
-                        actuator_velocities[0],
-                    ),
-                    -minus_g1_vy_left,
-                    -minus_zz_2_left_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        + 0.16
-                            * (INV_L_1_SQUARED * minus_m_2_left_on_vy
-                                + 1.5625 * minus_zz_2_left_on_vy),
-                    minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
-                    -minus_m_2_left_on_vy,
-                    pose[1] * t4_left,
-                    zz_1_right_on_vy,
-                    g1_vy_right * bias_a1_y_right,
-                    -(g1_vy_right * bias_a1_x_right),
-                    zz_1_right_on_vy,
-                    g1_vy_right * actuator_velocities[1],
-                    ::overact::math::wide::signed(
-                        g1_vy_right,
-                        actuator_velocities[1],
-                    ),
-                    g1_vy_right,
-                    -minus_zz_2_right_on_vy,
-                    inv_l_2_m_platform_on_vy
-                        - 0.16
-                            * (INV_L_1_SQUARED * m_2_right_on_vy
-                                - 1.5625 * minus_zz_2_right_on_vy),
-                    minus_g2_vy_right * a2_x_right
-                        - g1_vy_right * inv_l_2_a_on_f2_right,
-                    m_2_right_on_vy,
-                    -(pose[1] * t4_right),
-                    m_platform_on_vy,
-                ],
-            ])
+            output[0][21] = minus_g2_vx_right * a2_x_right
+                - g1_vx_right * inv_l_2_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t4_right);
+            let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
+            output[0][19] = -minus_zz_2_right_on_vx;
+            output[1][21] = minus_g2_vy_right * a2_x_right
+                - g1_vy_right * inv_l_2_a_on_f2_right;
+            let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
+            output[1][7] = -minus_zz_2_left_on_vy;
+            let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
+            output[0][8] = 0.16
+                * (INV_L_1_SQUARED * minus_m_2_left_on_vx
+                    + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx;
+            output[0][20] = -(minus_inv_l_2_dvx
+                + 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vx
+                        - 1.5625 * minus_zz_2_right_on_vx));
+            let m_platform_on_vy = dvy + 9.81;
+            output[1][24] = m_platform_on_vy;
+            let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+            output[1][8] = inv_l_2_m_platform_on_vy
+                + 0.16
+                    * (INV_L_1_SQUARED * minus_m_2_left_on_vy
+                        + 1.5625 * minus_zz_2_left_on_vy);
+            let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
+            output[1][19] = -minus_zz_2_right_on_vy;
+            output[1][20] = inv_l_2_m_platform_on_vy
+                - 0.16
+                    * (INV_L_1_SQUARED * m_2_right_on_vy
+                        - 1.5625 * minus_zz_2_right_on_vy);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -1815,10 +1876,27 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -1835,6 +1913,12 @@ impl FiveBar {
             const L_2: ::core::primitive::f64 = 0.25;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            output[0][6] = 1.0;
+            output[0][12..19].fill(0.0);
+            output[0][22] = 0.0;
+            output[1][0..7].fill(0.0);
+            output[1][10] = 0.0;
+            output[1][18] = 1.0;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -1846,30 +1930,39 @@ impl FiveBar {
                 - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[0][1] = a1_y_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            output[0][2] = -a1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             let k_left = 1.0 / det_left;
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            output[0][4] = -minus_rate_1_left;
+            output[0][5] = -::overact::math::wide::sign(minus_rate_1_left);
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let a_on_f1_left = l2_x_left * acceleration[0]
                 + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            let minus_rate_1_left = minus_g1_vx_left * twist[0]
-                + minus_g1_vy_left * twist[1];
             let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
             let t2_left = rho_squared_left - 0.1025;
             let t3_left = 0.5 * t2_left;
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t3_left);
-            let a1_y_left = 49.05 * l1_x_left;
-            let a1_x_left = 49.05 * l1_y_left;
+            output[0][0] = -minus_rate_dot_1_left;
+            output[0][3] = -minus_rate_dot_1_left;
+            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
+                - L_1 * minus_rate_dot_1_left;
+            output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1881,12 +1974,16 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = a1_y_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][14] = -a1_x_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
@@ -1900,30 +1997,48 @@ impl FiveBar {
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
             let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            // --- left
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-            let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
-            let g2_a2_left = k_left * inv_det_ja;
-            let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
-            let t1_platform = acceleration[1] + 9.81;
-            let m_platform_on_q1_left = vy_by_a1 * t1_platform
-                - minus_vx_by_a1 * acceleration[0];
-            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
-                - L_1 * minus_rate_dot_1_left;
-            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-            let m_platform_on_q1_right = vy_by_a2 * t1_platform
-                - minus_vx_by_a2 * acceleration[0];
-            let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            // --- left
             let c2_left = INV_HALF * t2_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+            output[0][9] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
+            output[0][7] = zz_2_left_on_q1_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
+            output[0][11] = ::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                qd_2_left,
+            );
+            let t1_platform = acceleration[1] + 9.81;
+            let m_platform_on_q1_left = vy_by_a1 * t1_platform
+                - minus_vx_by_a1 * acceleration[0];
+            output[0][24] = m_platform_on_q1_left;
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            output[0][8] = inv_l_2_m_platform_on_q1_left
+                - 0.16
+                    * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
+                        + 1.5625 * zz_2_left_on_q1_left);
+            let g2_a2_left = k_left * inv_det_ja;
+            output[1][9] = -(g2_a2_left * a2_x_left);
+            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+            output[1][7] = zz_2_left_on_q1_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[1][16] = rate_1_right;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let m_platform_on_q1_right = vy_by_a2 * t1_platform
+                - minus_vx_by_a2 * acceleration[0];
+            output[1][24] = m_platform_on_q1_right;
+            let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                - L_2 * zz_2_left_on_q1_right;
+            output[1][17] = ::overact::math::wide::sign(rate_1_right);
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
@@ -1932,76 +2047,48 @@ impl FiveBar {
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
-            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
                 * (a_on_f1_right + rate_1_squared_right * t3_right);
-            let a1_y_right = 49.05 * l1_x_right;
-            let a1_x_right = 49.05 * l1_y_right;
-            let g2_a1_right = k_right * inv_det_ja;
+            output[1][12] = rate_dot_1_right;
+            output[1][15] = rate_dot_1_right;
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-            let minus_rate_dot_2_right = k_right
-                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
                 - minus_g2_vy_right * vy_by_a2;
-            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
             let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
             let c2_right = INV_HALF * t2_right;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+            output[1][21] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right;
+            let g2_a1_right = k_right * inv_det_ja;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+            output[0][19] = -minus_zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                + L_2 * minus_zz_2_right_on_q1_left;
+            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+            output[1][19] = -minus_zz_2_right_on_q1_right;
+            output[1][20] = inv_l_2_m_platform_on_q1_right
+                - 0.16
+                    * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
+                        - 1.5625 * minus_zz_2_right_on_q1_right);
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            ::core::result::Result::Ok([
-                [
-                    -minus_rate_dot_1_left, a1_y_left, -a1_x_left, -minus_rate_dot_1_left,
-                    -minus_rate_1_left, -::overact::math::wide::sign(minus_rate_1_left), 1.0,
-                    zz_2_left_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left
-                        - 0.16
-                            * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
-                                + 1.5625 * zz_2_left_on_q1_left),
-                    INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
-                    L_1 * a1_y_plus_l_1_rate_dot_1_left,
-                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_right_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left
-                        + L_2 * minus_zz_2_right_on_q1_left,
-                    -(g2_a1_right * a2_x_right),
-                    0.0,
-                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
-                    m_platform_on_q1_left,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
-                    -(g2_a2_left * a2_x_left), 0.0,
-                    ::overact::math::wide::signed(g2_a2_left, qd_2_left), rate_dot_1_right,
-                    a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
-                    ::overact::math::wide::sign(rate_1_right), 1.0, -minus_zz_2_right_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right
-                        - 0.16
-                            * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
-                                - 1.5625 * minus_zz_2_right_on_q1_right),
-                    INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                    L_1 * a1_y_plus_l_1_rate_dot_1_right,
-                    -::overact::math::wide::signed(
-                        g2_a2_right - 1.0,
-                        minus_qd_2_right,
-                    ),
-                    m_platform_on_q1_right,
-                ],
-            ])
+            output[1][23] = -::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                minus_qd_2_right,
+            );
+            output[0][21] = -(g2_a1_right * a2_x_right);
+            output[0][23] = -::overact::math::wide::signed(
+                g2_a1_right,
+                minus_qd_2_right,
+            );
+            output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2025,13 +2112,32 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
             /// 1 / l_2
@@ -2042,33 +2148,51 @@ impl FiveBar {
             const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
             /// l_2
             const L_2: ::core::primitive::f64 = 0.25;
+            output[0][6] = 1.0;
+            output[0][12..19].fill(0.0);
+            output[0][22] = 0.0;
+            output[1][0..7].fill(0.0);
+            output[1][10] = 0.0;
+            output[1][18] = 1.0;
             // --- sines and cosines
-            let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
+            let [(s1_left, c1_left), (s1_right, c1_right), (s2_left, c2_left),
             (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
-                joints[1], joints[0], joints[2], joints[3],
+                joints[0], joints[2], joints[1], joints[3],
             ]);
             ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
             ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            let a1_y_left = 9.81 * c1_left;
+            output[0][1] = a1_y_left;
+            let a1_x_left = 9.81 * s1_left;
+            output[0][2] = -a1_x_left;
+            let a1_y_right = 9.81 * c1_right;
+            output[1][13] = a1_y_right;
+            let a1_x_right = 9.81 * s1_right;
+            output[1][14] = -a1_x_right;
             // --- left
             let inv_s2_left = 1.0 / s2_left;
             let fk1_x_left = c2_left * inv_s2_left;
+            let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+            let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+            let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+            output[0][5] = ::overact::math::wide::sign(t2_left);
+            let rate_1_left = INV_L_1 * t2_left;
+            output[0][4] = rate_1_left;
             let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
                 + s1_left * acceleration[1];
             let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
                 + c1_left * acceleration[1] - s1_left * acceleration[0];
-            let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
-            let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
-            let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
-            let rate_1_left = INV_L_1 * t2_left;
             let t3_left = t2_left * rate_1_left;
             let k2_left = INV_L_2 * inv_s2_left;
             let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
             let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
             let t4_left = a_on_f1_left + fk1_x_left * t3_left
                 + rate_2_squared_left * (L_2 * inv_s2_left);
+            let t5_left = a1_y_left + t4_left;
+            output[0][10] = L_1 * t5_left;
             let rate_dot_1_left = INV_L_1 * t4_left;
-            let a1_y_left = 9.81 * c1_left;
-            let a1_x_left = 9.81 * s1_left;
+            output[0][0] = rate_dot_1_left;
+            output[0][3] = rate_dot_1_left;
             let minus_g2_vx_left = c1_left * k2_left;
             let inv_s2_right = 1.0 / s2_right;
             let fk1_x_right = c2_right * inv_s2_right;
@@ -2090,23 +2214,40 @@ impl FiveBar {
             let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1
                 - minus_g2_vy_left * vy_by_a1;
             let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
+            let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
+            output[0][9] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
             let minus_rate_dot_2_left = k2_left
                 * (a_on_f2_left + t1_left * minus_rate_2_left);
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-            let minus_g2_a2_left = k2_left * l_1_per_det_ja;
-            let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
+            output[0][7] = -minus_zz_2_left_on_q1_left;
+            let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+            output[0][11] = -::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                minus_qd_2_left,
+            );
             let t1_platform = acceleration[1] + 9.81;
             let m_platform_on_q1_left = vy_by_a1 * t1_platform
                 - minus_vx_by_a1 * acceleration[0];
+            output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            let t5_left = a1_y_left + t4_left;
+            output[0][8] = inv_l_2_m_platform_on_q1_left
+                - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left);
+            let minus_g2_a2_left = k2_left * l_1_per_det_ja;
+            output[1][9] = minus_g2_a2_left * a2_x_left;
+            output[1][11] = ::overact::math::wide::signed(
+                minus_g2_a2_left,
+                minus_qd_2_left,
+            );
+            let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
+            output[1][7] = zz_2_left_on_q1_right;
             let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
             let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
             let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
                 - minus_vy_by_a2 * t1_platform;
+            output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
-            let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                - L_2 * zz_2_left_on_q1_right;
             // --- right
             let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
                 + s1_right * acceleration[1];
@@ -2116,77 +2257,50 @@ impl FiveBar {
             let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
             let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
             let rate_1_right = INV_L_1 * t2_right;
+            output[1][16] = rate_1_right;
             let t3_right = t2_right * rate_1_right;
             let k2_right = INV_L_2 * inv_s2_right;
             let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let t4_right = a_on_f1_right + fk1_x_right * t3_right
                 + rate_2_squared_right * (L_2 * inv_s2_right);
-            let rate_dot_1_right = INV_L_1 * t4_right;
-            let a1_y_right = 9.81 * c1_right;
-            let a1_x_right = 9.81 * s1_right;
-            let g2_a1_right = l_1_per_det_ja * k2_right;
             let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
-            let minus_rate_dot_2_right = k2_right
-                * (a_on_f2_right + t1_right * minus_rate_2_right);
-            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
             let minus_g2_vy_right = s1_right * k2_right;
             let minus_g2_vx_right = c1_right * k2_right;
             let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
                 - minus_g2_vx_right * vx_by_a2;
-            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
             let t5_right = a1_y_right + t4_right;
             let a2_x_right = c2_right * (a1_x_right - t3_right)
                 + s2_right * t5_right;
+            output[1][21] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right;
+            let g2_a1_right = l_1_per_det_ja * k2_right;
+            let minus_rate_dot_2_right = k2_right
+                * (a_on_f2_right + t1_right * minus_rate_2_right);
+            let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+            output[0][19] = -minus_zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                + L_2 * minus_zz_2_right_on_q1_left;
+            output[1][17] = ::overact::math::wide::sign(t2_right);
+            let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+            output[1][19] = -minus_zz_2_right_on_q1_right;
+            output[1][20] = inv_l_2_m_platform_on_q1_right
+                - 0.16
+                    * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right);
+            output[0][21] = -(g2_a1_right * a2_x_right);
+            output[1][22] = L_1 * t5_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            ::core::result::Result::Ok([
-                [
-                    rate_dot_1_left, a1_y_left, -a1_x_left, rate_dot_1_left, rate_1_left,
-                    ::overact::math::wide::sign(t2_left), 1.0, -minus_zz_2_left_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left
-                        - 0.16
-                            * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left),
-                    L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left,
-                    L_1 * t5_left,
-                    -::overact::math::wide::signed(
-                        g2_a1_left - 1.0,
-                        minus_qd_2_left,
-                    ),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_right_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left
-                        + L_2 * minus_zz_2_right_on_q1_left,
-                    -(g2_a1_right * a2_x_right),
-                    0.0,
-                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
-                    m_platform_on_q1_left,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
-                    minus_g2_a2_left * a2_x_left, 0.0,
-                    ::overact::math::wide::signed(minus_g2_a2_left, minus_qd_2_left),
-                    rate_dot_1_right, a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
-                    ::overact::math::wide::sign(t2_right), 1.0, -minus_zz_2_right_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right
-                        - 0.16
-                            * (INV_L_1 * t5_right
-                                - 1.5625 * minus_zz_2_right_on_q1_right),
-                    L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
-                    L_1 * t5_right,
-                    -::overact::math::wide::signed(
-                        g2_a2_right - 1.0,
-                        minus_qd_2_right,
-                    ),
-                    m_platform_on_q1_right,
-                ],
-            ])
+            output[0][23] = -::overact::math::wide::signed(
+                g2_a1_right,
+                minus_qd_2_right,
+            );
+            output[1][23] = -::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                minus_qd_2_right,
+            );
+            let rate_dot_1_right = INV_L_1 * t4_right;
+            output[1][12] = rate_dot_1_right;
+            output[1][15] = rate_dot_1_right;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2210,6 +2324,25 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_actuators_into(
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 25]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -2217,7 +2350,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -2234,6 +2367,20 @@ impl FiveBar {
             const L_2: ::core::primitive::f64 = 0.25;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            output[0][0] = actuator_accelerations[0];
+            output[0][3] = actuator_accelerations[0];
+            output[0][4] = actuator_velocities[0];
+            output[0][6] = 1.0;
+            output[0][12..19].fill(0.0);
+            output[0][22] = 0.0;
+            output[1][0..7].fill(0.0);
+            output[1][10] = 0.0;
+            output[1][12] = actuator_accelerations[1];
+            output[1][15] = actuator_accelerations[1];
+            output[1][16] = actuator_velocities[1];
+            output[1][18] = 1.0;
+            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]);
+            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]);
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2247,23 +2394,35 @@ impl FiveBar {
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][1] = bias_a1_y_left;
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            output[0][10] = L_1 * bias_a1_y_plus_l_1_qdd1_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let bias_a1_x_left = 49.05 * l1_y_left;
-            let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            let k_left = 1.0 / det_left;
-            let g2_vy_left = l1_y_left * k_left;
+            output[0][2] = -bias_a1_x_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = bias_a1_y_right;
+            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+                + L_1 * actuator_accelerations[1];
+            output[1][22] = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[1][14] = -bias_a1_x_right;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let k_left = 1.0 / det_left;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -2271,7 +2430,6 @@ impl FiveBar {
             let g1_vx_right = l2_x_right * k_right;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -2289,6 +2447,26 @@ impl FiveBar {
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_det_ja = 1.0 / det_ja;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = rho_squared_left - 0.1025;
+            let g2_a2_left = k_left * inv_det_ja;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+            output[1][9] = -(g2_a2_left * a2_x_left);
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = rho_squared_right - 0.1025;
+            let g2_a1_right = k_right * inv_det_ja;
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+            output[0][21] = -(g2_a1_right * a2_x_right);
+            let g2_vy_left = l1_y_left * k_left;
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let g2_vx_left = l1_x_left * k_left;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
@@ -2303,9 +2481,6 @@ impl FiveBar {
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-            let rate_1_squared_left = actuator_velocities[0]
-                * actuator_velocities[0];
-            let t2_left = rho_squared_left - 0.1025;
             let t3_left = 0.5 * t2_left;
             let minus_bias_rate_dot_1_left = k_left
                 * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
@@ -2317,9 +2492,6 @@ impl FiveBar {
             let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-            let rate_1_squared_right = actuator_velocities[1]
-                * actuator_velocities[1];
-            let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
@@ -2338,97 +2510,58 @@ impl FiveBar {
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-            let g2_a2_left = k_left * inv_det_ja;
-            let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
+            output[0][7] = -minus_zz_2_left_on_q1_left;
             let t1_platform = dvy + 9.81;
-            let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx
-                + vy_by_a1 * t1_platform;
-            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-                + L_1 * actuator_accelerations[0];
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let m_platform_on_q1_right = minus_vx_by_a2 * minus_dvx
                 + vy_by_a2 * t1_platform;
+            output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            let c2_left = INV_HALF * t2_left;
-            let minus_s2_left = 20.0 * det_left;
-            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-                - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-            let qd_2_left = rate_2_left - actuator_velocities[0];
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            let bias_a1_x_right = 49.05 * l1_y_right;
-            let g2_a1_right = k_right * inv_det_ja;
-            // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
-            let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
                 - minus_g2_vy_right * vy_by_a2;
             let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
-            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-                + L_1 * actuator_accelerations[1];
-            let c2_right = INV_HALF * t2_right;
-            let s2_right = 20.0 * det_right;
-            let a2_x_right = c2_right
-                * (bias_a1_x_right - L_1 * rate_1_squared_right)
-                + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+            output[1][19] = zz_2_right_on_q1_right;
+            output[1][20] = inv_l_2_m_platform_on_q1_right
+                - 0.16
+                    * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
+                        + 1.5625 * zz_2_right_on_q1_right);
+            let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx
+                + vy_by_a1 * t1_platform;
+            output[0][24] = m_platform_on_q1_left;
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            output[0][8] = inv_l_2_m_platform_on_q1_left
+                - 0.16
+                    * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
+                        - 1.5625 * minus_zz_2_left_on_q1_left);
+            output[0][9] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left);
+            output[1][21] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right);
+            let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
+            output[1][7] = -minus_zz_2_left_on_q1_right;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                + L_2 * minus_zz_2_left_on_q1_right;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            output[0][11] = ::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                qd_2_left,
+            );
+            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
+            output[0][19] = zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                - L_2 * zz_2_right_on_q1_left;
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            ::core::result::Result::Ok([
-                [
-                    actuator_accelerations[0], bias_a1_y_left, -bias_a1_x_left,
-                    actuator_accelerations[0], actuator_velocities[0],
-                    ::overact::math::wide::sign(actuator_velocities[0]), 1.0,
-                    -minus_zz_2_left_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left
-                        - 0.16
-                            * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
-                                - 1.5625 * minus_zz_2_left_on_q1_left),
-                    -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left),
-                    L_1 * bias_a1_y_plus_l_1_qdd1_left,
-                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    zz_2_right_on_q1_left,
-                    inv_l_2_m_platform_on_q1_left - L_2 * zz_2_right_on_q1_left,
-                    -(g2_a1_right * a2_x_right),
-                    0.0,
-                    ::overact::math::wide::signed(g2_a1_right, qd_2_right),
-                    m_platform_on_q1_left,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right
-                        + L_2 * minus_zz_2_left_on_q1_right,
-                    -(g2_a2_left * a2_x_left),
-                    0.0,
-                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
-                    actuator_accelerations[1],
-                    bias_a1_y_right,
-                    -bias_a1_x_right,
-                    actuator_accelerations[1],
-                    actuator_velocities[1],
-                    ::overact::math::wide::sign(actuator_velocities[1]),
-                    1.0,
-                    zz_2_right_on_q1_right,
-                    inv_l_2_m_platform_on_q1_right
-                        - 0.16
-                            * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
-                                + 1.5625 * zz_2_right_on_q1_right),
-                    -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
-                    L_1 * bias_a1_y_plus_l_1_qdd1_right,
-                    ::overact::math::wide::signed(g2_a2_right - 1.0, qd_2_right),
-                    m_platform_on_q1_right,
-                ],
-            ])
+            output[0][23] = ::overact::math::wide::signed(g2_a1_right, qd_2_right);
+            output[1][23] = ::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                qd_2_right,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -2450,10 +2583,27 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -2466,6 +2616,8 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            output[0][0] = acceleration[0];
+            output[1][0] = acceleration[1] + 9.81;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2476,27 +2628,66 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             let k_left = 1.0 / det_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            output[1][11] = -minus_g1_vy_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[1][3] = -(minus_g1_vy_left * a1_y_left);
+            let a1_x_left = 49.05 * l1_y_left;
+            output[1][5] = minus_g1_vy_left * a1_x_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][11] = -minus_g1_vx_left;
+            output[0][3] = -(minus_g1_vx_left * a1_y_left);
+            output[0][5] = minus_g1_vx_left * a1_x_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            output[0][7] = minus_g1_vx_left * minus_rate_1_left;
+            output[1][7] = minus_g1_vy_left * minus_rate_1_left;
+            output[0][9] = ::overact::math::wide::signed(
+                minus_g1_vx_left,
+                minus_rate_1_left,
+            );
+            output[1][9] = ::overact::math::wide::signed(
+                minus_g1_vy_left,
+                minus_rate_1_left,
+            );
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let a_on_f1_left = l2_x_left * acceleration[0]
                 + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            let minus_rate_1_left = minus_g1_vx_left * twist[0]
-                + minus_g1_vy_left * twist[1];
             let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
             let t2_left = rho_squared_left - 0.1025;
             let t3_left = 0.5 * t2_left;
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t3_left);
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            output[0][15] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                + g2_vx_left * a2_x_left);
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            output[0][13] = g2_vx_left * rate_dot_2_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][17] = d_x_left * t4_left;
+            output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                + g2_vy_left * a2_x_left);
+            output[1][13] = g2_vy_left * rate_dot_2_left;
+            output[0][1] = minus_g1_vx_left * minus_rate_dot_1_left;
+            output[1][1] = minus_g1_vy_left * minus_rate_dot_1_left;
+            output[1][17] = pose[1] * t4_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -2507,13 +2698,27 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
-            let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            output[1][12] = g1_vy_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][4] = g1_vy_right * a1_y_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][6] = -(g1_vy_right * a1_x_right);
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            output[0][12] = g1_vx_right;
+            output[0][4] = g1_vx_right * a1_y_right;
+            output[0][6] = -(g1_vx_right * a1_x_right);
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[0][8] = g1_vx_right * rate_1_right;
+            output[1][8] = g1_vy_right * rate_1_right;
+            output[0][10] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
+            output[1][10] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
@@ -2521,87 +2726,33 @@ impl FiveBar {
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
-            let g1_vy_right = l2_y_right * k_right;
-            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
                 * (a_on_f1_right + rate_1_squared_right * t3_right);
-            let a1_y_left = 49.05 * l1_x_left;
-            let a1_y_right = 49.05 * l1_x_right;
-            let a1_x_left = 49.05 * l1_y_left;
-            let a1_x_right = 49.05 * l1_y_right;
-            let minus_a_on_f2_left = l1_x_left * acceleration[0]
-                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-            let minus_rate_dot_2_right = k_right
-                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-            // --- left
-            let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-            let c2_left = INV_HALF * t2_left;
-            let minus_s2_left = 20.0 * det_left;
-            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            // --- right
             let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
             let c2_right = INV_HALF * t2_right;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            let qd_2_left = minus_rate_1_left + rate_2_left;
-            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][16] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             let t4_right = ::overact::math::wide::signed(k_right, minus_qd_2_right);
-            ::core::result::Result::Ok([
-                [
-                    acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
-                    g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * a1_y_left),
-                    g1_vx_right * a1_y_right, minus_g1_vx_left * a1_x_left,
-                    -(g1_vx_right * a1_x_right), minus_g1_vx_left * minus_rate_1_left,
-                    g1_vx_right * rate_1_right,
-                    ::overact::math::wide::signed(
-                        minus_g1_vx_left,
-                        minus_rate_1_left,
-                    ),
-                    ::overact::math::wide::signed(g1_vx_right, rate_1_right),
-                    -minus_g1_vx_left,
-                    g1_vx_right,
-                    g2_vx_left * rate_dot_2_left,
-                    minus_g2_vx_right * minus_rate_dot_2_right,
-                    -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                        + g2_vx_left * a2_x_left),
-                    g1_vx_right * minus_inv_l_2_a_on_f2_right
-                        + minus_g2_vx_right * a2_x_right,
-                    d_x_left * t4_left,
-                    d_x_right * t4_right,
-                ],
-                [
-                    acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
-                    g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * a1_y_left),
-                    g1_vy_right * a1_y_right, minus_g1_vy_left * a1_x_left,
-                    -(g1_vy_right * a1_x_right), minus_g1_vy_left * minus_rate_1_left,
-                    g1_vy_right * rate_1_right,
-                    ::overact::math::wide::signed(
-                        minus_g1_vy_left,
-                        minus_rate_1_left,
-                    ),
-                    ::overact::math::wide::signed(g1_vy_right, rate_1_right),
-                    -minus_g1_vy_left,
-                    g1_vy_right,
-                    g2_vy_left * rate_dot_2_left,
-                    minus_g2_vy_right * minus_rate_dot_2_right,
-                    -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                        + g2_vy_left * a2_x_left),
-                    g1_vy_right * minus_inv_l_2_a_on_f2_right
-                        + minus_g2_vy_right * a2_x_right,
-                    pose[1] * t4_left,
-                    pose[1] * t4_right,
-                ],
-            ])
+            output[0][18] = d_x_right * t4_right;
+            output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right;
+            output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right;
+            output[0][2] = g1_vx_right * rate_dot_1_right;
+            output[1][2] = g1_vy_right * rate_dot_1_right;
+            output[1][18] = pose[1] * t4_right;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -2625,6 +2776,25 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
@@ -2639,6 +2809,7 @@ impl FiveBar {
         const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
+        output[0][0] = acceleration[0];
         // --- sines and cosines
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
@@ -2646,11 +2817,26 @@ impl FiveBar {
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        output[1][0] = acceleration[1] + 9.81;
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
-        let s12_left = s1_left * c2_left + c1_left * s2_left;
         let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
+        output[0][11] = g1_vx_left;
+        let a1_y_left = 9.81 * c1_left;
+        output[0][3] = g1_vx_left * a1_y_left;
+        let s12_left = s1_left * c2_left + c1_left * s2_left;
+        let g1_vy_left = s12_left * k1_left;
+        output[1][11] = g1_vy_left;
+        output[1][3] = g1_vy_left * a1_y_left;
+        let a1_x_left = 9.81 * s1_left;
+        output[0][5] = -(g1_vx_left * a1_x_left);
+        output[1][5] = -(g1_vy_left * a1_x_left);
+        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
+        output[0][7] = g1_vx_left * rate_1_left;
+        output[1][7] = g1_vy_left * rate_1_left;
+        output[0][9] = ::overact::math::signed(g1_vx_left, rate_1_left);
+        output[1][9] = ::overact::math::signed(g1_vy_left, rate_1_left);
         let k2_left = k1_left * L_1_PER_L_2;
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
@@ -2658,19 +2844,50 @@ impl FiveBar {
             + minus_g2_vy_left * twist[1];
         let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
         let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
-        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
-            + l_2_rate_2_squared_left;
-        let g1_vy_left = s12_left * k1_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
         let rate_1_squared_left = rate_1_left * rate_1_left;
         let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        output[0][13] = minus_g2_vx_left * minus_rate_dot_2_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
         let rate_dot_1_left = k1_left
             * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        output[0][1] = g1_vx_left * rate_dot_1_left;
+        output[1][1] = g1_vy_left * rate_dot_1_left;
+        output[1][13] = minus_g2_vy_left * minus_rate_dot_2_left;
+        let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
+        let a2_x_left = a_on_f1_left + s12_left * 9.81;
+        output[0][15] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+            + minus_g2_vx_left * a2_x_left;
+        let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        output[0][17] = ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left);
+        output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+            + minus_g2_vy_left * a2_x_left;
+        let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+        output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left);
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
         let k1_right = INV_L_1 / s2_right;
         let g1_vx_right = c12_right * k1_right;
+        output[0][12] = g1_vx_right;
+        let a1_y_right = 9.81 * c1_right;
+        output[0][4] = g1_vx_right * a1_y_right;
+        let s12_right = s1_right * c2_right + c1_right * s2_right;
+        let g1_vy_right = s12_right * k1_right;
+        output[1][12] = g1_vy_right;
+        output[1][4] = g1_vy_right * a1_y_right;
+        let a1_x_right = 9.81 * s1_right;
+        output[0][6] = -(g1_vx_right * a1_x_right);
+        output[1][6] = -(g1_vy_right * a1_x_right);
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        output[0][8] = g1_vx_right * rate_1_right;
+        output[1][8] = g1_vy_right * rate_1_right;
+        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right);
+        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right);
         let k2_right = k1_right * L_1_PER_L_2;
         let minus_g2_vx_right = c1_right * k2_right;
         let minus_g2_vy_right = s1_right * k2_right;
@@ -2678,68 +2895,32 @@ impl FiveBar {
             + minus_g2_vy_right * twist[1];
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let g1_vy_right = s12_right * k1_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-        let a1_y_left = 9.81 * c1_left;
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_left = 9.81 * s1_left;
-        let a1_x_right = 9.81 * s1_right;
-        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
-            + l_1_rate_1_squared_left;
-        let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
         let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
             + l_1_rate_1_squared_right;
         let minus_rate_dot_2_right = k2_right
             * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
-        let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
-        let a2_x_left = a_on_f1_left + s12_left * 9.81;
+        output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        output[0][2] = g1_vx_right * rate_dot_1_right;
+        output[1][2] = g1_vy_right * rate_dot_1_right;
+        output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right;
         let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
         let a2_x_right = a_on_f1_right + s12_right * 9.81;
-        let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+        output[0][16] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+            + minus_g2_vx_right * a2_x_right;
         let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        output[0][18] = ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right);
+        output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+            + minus_g2_vy_right * a2_x_right;
         let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-        ::core::result::Result::Ok([
-            [
-                acceleration[0], g1_vx_left * rate_dot_1_left, g1_vx_right * rate_dot_1_right,
-                g1_vx_left * a1_y_left, g1_vx_right * a1_y_right, -(g1_vx_left * a1_x_left),
-                -(g1_vx_right * a1_x_right), g1_vx_left * rate_1_left, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_left, rate_1_left),
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_left, g1_vx_right,
-                minus_g2_vx_left * minus_rate_dot_2_left,
-                minus_g2_vx_right * minus_rate_dot_2_right,
-                g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
-                    + minus_g2_vx_left * a2_x_left,
-                g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
-                ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left),
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
-            ],
-            [
-                acceleration[1] + 9.81, g1_vy_left * rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, g1_vy_left * a1_y_left, g1_vy_right * a1_y_right,
-                -(g1_vy_left * a1_x_left), -(g1_vy_right * a1_x_right), g1_vy_left * rate_1_left,
-                g1_vy_right * rate_1_right, ::overact::math::signed(g1_vy_left, rate_1_left),
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_left, g1_vy_right,
-                minus_g2_vy_left * minus_rate_dot_2_left,
-                minus_g2_vy_right * minus_rate_dot_2_right,
-                g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
-                    + minus_g2_vy_left * a2_x_left,
-                g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
-                ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left),
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
-            ],
-        ])
+        output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right);
+        ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2762,6 +2943,25 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -2769,7 +2969,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -2780,20 +2980,8 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            // --- right
-            let d_x_right = pose[0] - HALF;
-            let y_squared = pose[1] * pose[1];
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            let t1_right = 0.5 - 0.01125 / rho_squared_right;
-            let h_squared_right = L_1_SQUARED / rho_squared_right
-                - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let l2_y_right = pose[1] - l1_y_right;
-            let det_right = rho_squared_right * h_right;
-            let k_right = 1.0 / det_right;
-            let g1_vy_right = l2_y_right * k_right;
             // --- left
+            let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
@@ -2803,20 +2991,72 @@ impl FiveBar {
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_left = 1.0 / det_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let g2_vy_left = l1_y_left * k_left;
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let l2_x_right = d_x_right - l1_x_right;
-            let g1_vx_right = l2_x_right * k_right;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][11] = -minus_g1_vx_left;
+            output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]);
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
+            output[1][11] = -minus_g1_vy_left;
+            output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]);
+            output[0][7] = -(minus_g1_vx_left * actuator_velocities[0]);
+            output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]);
+            output[0][9] = -::overact::math::wide::signed(
+                minus_g1_vx_left,
+                actuator_velocities[0],
+            );
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_left,
+                actuator_velocities[0],
+            );
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = -(minus_g1_vx_left * bias_a1_y_left);
+            output[1][3] = -(minus_g1_vy_left * bias_a1_y_left);
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = minus_g1_vx_left * bias_a1_x_left;
+            output[1][5] = minus_g1_vy_left * bias_a1_x_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let g1_vx_right = l2_x_right * k_right;
+            output[0][12] = g1_vx_right;
+            output[0][2] = g1_vx_right * actuator_accelerations[1];
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            output[1][12] = g1_vy_right;
+            output[1][2] = g1_vy_right * actuator_accelerations[1];
+            output[0][8] = g1_vx_right * actuator_velocities[1];
+            output[1][8] = g1_vy_right * actuator_velocities[1];
+            output[0][10] = ::overact::math::wide::signed(
+                g1_vx_right,
+                actuator_velocities[1],
+            );
+            output[1][10] = ::overact::math::wide::signed(
+                g1_vy_right,
+                actuator_velocities[1],
+            );
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[0][4] = g1_vx_right * bias_a1_y_right;
+            output[1][4] = g1_vy_right * bias_a1_y_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[0][6] = -(g1_vx_right * bias_a1_x_right);
+            output[1][6] = -(g1_vy_right * bias_a1_x_right);
+            let g2_vy_left = l1_y_left * k_left;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 t1,
@@ -2829,113 +3069,79 @@ impl FiveBar {
             let minus_vx = (g1_vy_right * actuator_velocities[0]
                 + minus_g1_vy_left * actuator_velocities[1]) / t1;
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
+            let qd_2_left = rate_2_left - actuator_velocities[0];
+            let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][17] = d_x_left * t2_left;
+            output[1][17] = pose[1] * t2_left;
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t2_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            output[0][18] = -(d_x_right * t2_right);
+            output[1][18] = -(pose[1] * t2_right);
+            // --- left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
-            let t2_left = 0.5 * (rho_squared_left - 0.1025);
+            let t3_left = 0.5 * (rho_squared_left - 0.1025);
             let minus_bias_rate_dot_1_left = k_left
-                * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+                * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
             let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_left;
             // --- right
-            let minus_g2_vx_right = l1_x_right * k_right;
-            let minus_g2_vy_right = l1_y_right * k_right;
-            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
-            let t2_right = 0.5 * (rho_squared_right - 0.1025);
+            let t3_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
-                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
             let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
                 - bias_rate_dot_1_right;
             let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
                 + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right) / t1;
+            output[0][0] = -minus_dvx;
             let dvy = (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                 + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right) / t1;
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            let bias_a1_x_right = 49.05 * l1_y_right;
+            // --- left
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
             let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
                 - minus_bias_a_on_f2_left;
-            let minus_rate_dot_2_left = k_left
-                * (a_on_f2_left - rate_2_squared_left * t2_left);
-            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
-                - minus_bias_a_on_f2_right;
-            let rate_dot_2_right = k_right
-                * (a_on_f2_right - rate_2_squared_right * t2_right);
-            // --- left
             let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
-            let c2_left = t2_left * 20.0;
+            let c2_left = t3_left * 20.0;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            output[0][15] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+                - g2_vx_left * a2_x_left;
+            let minus_rate_dot_2_left = k_left
+                * (a_on_f2_left - rate_2_squared_left * t3_left);
+            output[0][13] = -(g2_vx_left * minus_rate_dot_2_left);
+            output[1][15] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+                - g2_vy_left * a2_x_left;
             // --- right
-            let c2_right = t2_right * 20.0;
+            let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+            let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+                - minus_bias_a_on_f2_right;
+            let c2_right = t3_right * 20.0;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            let qd_2_left = rate_2_left - actuator_velocities[0];
-            let t3_left = ::overact::math::wide::signed(k_left, qd_2_left);
-            let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            ::core::result::Result::Ok([
-                [
-                    -minus_dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
-                    g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * bias_a1_y_left),
-                    g1_vx_right * bias_a1_y_right, minus_g1_vx_left * bias_a1_x_left,
-                    -(g1_vx_right * bias_a1_x_right), -(minus_g1_vx_left * actuator_velocities[0]),
-                    g1_vx_right * actuator_velocities[1],
-                    -::overact::math::wide::signed(
-                        minus_g1_vx_left,
-                        actuator_velocities[0],
-                    ),
-                    ::overact::math::wide::signed(
-                        g1_vx_right,
-                        actuator_velocities[1],
-                    ),
-                    -minus_g1_vx_left,
-                    g1_vx_right,
-                    -(g2_vx_left * minus_rate_dot_2_left),
-                    -(minus_g2_vx_right * rate_dot_2_right),
-                    minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
-                    minus_g2_vx_right * a2_x_right
-                        - g1_vx_right * inv_l_2_a_on_f2_right,
-                    d_x_left * t3_left,
-                    -(d_x_right * t3_right),
-                ],
-                [
-                    dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
-                    g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * bias_a1_y_left),
-                    g1_vy_right * bias_a1_y_right, minus_g1_vy_left * bias_a1_x_left,
-                    -(g1_vy_right * bias_a1_x_right), -(minus_g1_vy_left * actuator_velocities[0]),
-                    g1_vy_right * actuator_velocities[1],
-                    -::overact::math::wide::signed(
-                        minus_g1_vy_left,
-                        actuator_velocities[0],
-                    ),
-                    ::overact::math::wide::signed(
-                        g1_vy_right,
-                        actuator_velocities[1],
-                    ),
-                    -minus_g1_vy_left,
-                    g1_vy_right,
-                    -(g2_vy_left * minus_rate_dot_2_left),
-                    -(minus_g2_vy_right * rate_dot_2_right),
-                    minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
-                    minus_g2_vy_right * a2_x_right
-                        - g1_vy_right * inv_l_2_a_on_f2_right,
-                    pose[1] * t3_left,
-                    -(pose[1] * t3_right),
-                ],
-            ])
+            output[0][16] = minus_g2_vx_right * a2_x_right
+                - g1_vx_right * inv_l_2_a_on_f2_right;
+            let rate_dot_2_right = k_right
+                * (a_on_f2_right - rate_2_squared_right * t3_right);
+            output[0][14] = -(minus_g2_vx_right * rate_dot_2_right);
+            output[1][16] = minus_g2_vy_right * a2_x_right
+                - g1_vy_right * inv_l_2_a_on_f2_right;
+            output[1][13] = -(g2_vy_left * minus_rate_dot_2_left);
+            output[1][14] = -(minus_g2_vy_right * rate_dot_2_right);
+            output[1][0] = dvy + 9.81;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2957,10 +3163,27 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -2973,21 +3196,22 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            // --- right
-            let d_x_right = pose[0] - HALF;
-            let y_squared = pose[1] * pose[1];
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            let inv_rho_squared_right = 1.0 / rho_squared_right;
-            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
-                - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let l2_x_right = d_x_right - l1_x_right;
-            let det_right = rho_squared_right * h_right;
-            let k_right = 1.0 / det_right;
-            let g1_vx_right = l2_x_right * k_right;
+            output[0][2] = 0.0;
+            output[0][4] = 0.0;
+            output[0][6] = 0.0;
+            output[0][8] = 0.0;
+            output[0][10] = 0.0;
+            output[0][11] = 1.0;
+            output[0][12] = 0.0;
+            output[1][1] = 0.0;
+            output[1][3] = 0.0;
+            output[1][5] = 0.0;
+            output[1][7] = 0.0;
+            output[1][9] = 0.0;
+            output[1][11] = 0.0;
+            output[1][12] = 1.0;
             // --- left
+            let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
@@ -2998,20 +3222,57 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = a1_y_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = -a1_x_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let l2_y_right = pose[1] - l1_y_right;
-            let g1_vy_right = l2_y_right * k_right;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            output[0][7] = -minus_rate_1_left;
+            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left);
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            output[0][1] = -minus_rate_dot_1_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][4] = a1_y_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][6] = -a1_x_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
@@ -3021,23 +3282,29 @@ impl FiveBar {
             )?;
             let inv_det_ja = 1.0 / det_ja;
             let vy_by_a1 = g1_vx_right * inv_det_ja;
-            let t1_platform = acceleration[1] + 9.81;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            // --- left
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            output[0][15] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+            output[0][13] = g2_a1_left * rate_dot_2_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            output[0][17] = ::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                qd_2_left,
+            );
+            let t1_platform = acceleration[1] + 9.81;
+            output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-            let g2_vx_left = l1_x_left * k_left;
-            let g2_vy_left = l1_y_left * k_left;
-            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-            let rate_2_squared_left = rate_2_left * rate_2_left;
-            let a_on_f1_left = l2_x_left * acceleration[0]
-                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
-            let minus_rate_1_left = minus_g1_vx_left * twist[0]
-                + minus_g1_vy_left * twist[1];
-            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-            let t2_left = rho_squared_left - 0.1025;
-            let t3_left = 0.5 * t2_left;
-            let minus_rate_dot_1_left = k_left
-                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            output[1][0] = vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0];
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
@@ -3047,63 +3314,43 @@ impl FiveBar {
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[1][8] = rate_1_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
                 * (a_on_f1_right + rate_1_squared_right * t3_right);
-            let a1_y_left = 49.05 * l1_x_left;
-            let a1_y_right = 49.05 * l1_x_right;
-            let a1_x_left = 49.05 * l1_y_left;
-            let a1_x_right = 49.05 * l1_y_right;
-            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-            let minus_a_on_f2_left = l1_x_left * acceleration[0]
-                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-            let g2_a2_left = k_left * inv_det_ja;
-            let g2_a1_right = k_right * inv_det_ja;
+            output[1][2] = rate_dot_1_right;
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-            let minus_rate_dot_2_right = k_right
-                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
                 - minus_g2_vy_right * vy_by_a2;
-            let c2_left = INV_HALF * t2_left;
-            let minus_s2_left = 20.0 * det_left;
-            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
             let c2_right = INV_HALF * t2_right;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            let qd_2_left = minus_rate_1_left + rate_2_left;
+            output[1][16] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right;
+            let g2_a1_right = k_right * inv_det_ja;
+            let minus_rate_dot_2_right = k_right
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+            output[0][14] = -(g2_a1_right * minus_rate_dot_2_right);
+            let g2_a2_left = k_left * inv_det_ja;
+            output[1][13] = g2_a2_left * rate_dot_2_left;
+            output[1][14] = -(g2_a2_right * minus_rate_dot_2_right);
+            output[1][15] = -(g2_a2_left * a2_x_left);
+            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            output[0][16] = -(g2_a1_right * a2_x_right);
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            ::core::result::Result::Ok([
-                [
-                    vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0],
-                    -minus_rate_dot_1_left, 0.0, a1_y_left, 0.0, -a1_x_left, 0.0,
-                    -minus_rate_1_left, 0.0, -::overact::math::wide::sign(minus_rate_1_left), 0.0,
-                    1.0, 0.0, g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
-                    INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
-                    -(g2_a1_right * a2_x_right),
-                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
-                    -::overact::math::wide::signed(g2_a1_right, minus_qd_2_right),
-                ],
-                [
-                    vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0], 0.0,
-                    rate_dot_1_right, 0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
-                    ::overact::math::wide::sign(rate_1_right), 0.0, 1.0,
-                    g2_a2_left * rate_dot_2_left, -(g2_a2_right * minus_rate_dot_2_right),
-                    -(g2_a2_left * a2_x_left),
-                    INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
-                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
-                    -::overact::math::wide::signed(
-                        g2_a2_right - 1.0,
-                        minus_qd_2_right,
-                    ),
-                ],
-            ])
+            output[0][18] = -::overact::math::wide::signed(
+                g2_a1_right,
+                minus_qd_2_right,
+            );
+            output[1][18] = -::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                minus_qd_2_right,
+            );
+            output[1][10] = ::overact::math::wide::sign(rate_1_right);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -3127,6 +3374,25 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
@@ -3143,19 +3409,59 @@ impl FiveBar {
         const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
+        output[0][2] = 0.0;
+        output[0][4] = 0.0;
+        output[0][6] = 0.0;
+        output[0][8] = 0.0;
+        output[0][10] = 0.0;
+        output[0][11] = 1.0;
+        output[0][12] = 0.0;
+        output[1][1] = 0.0;
+        output[1][3] = 0.0;
+        output[1][5] = 0.0;
+        output[1][7] = 0.0;
+        output[1][9] = 0.0;
+        output[1][11] = 0.0;
+        output[1][12] = 1.0;
         // --- sines and cosines
-        let [(s1_right, c1_right), (s2_right, c2_right), (s1_left, c1_left),
-        (s2_left, c2_left)] = ::overact::math::sin_cos_all([
-            joints[2], joints[3], joints[0], joints[1],
+        let [(s1_left, c1_left), (s1_right, c1_right), (s2_left, c2_left),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[0], joints[2], joints[1], joints[3],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        let inv_s2_right = 1.0 / s2_right;
-        let fk1_x_right = c2_right * inv_s2_right;
-        let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
+        let a1_y_left = 9.81 * c1_left;
+        output[0][3] = a1_y_left;
+        let a1_y_right = 9.81 * c1_right;
+        output[1][4] = a1_y_right;
+        let a1_x_left = 9.81 * s1_left;
+        output[0][5] = -a1_x_left;
+        let a1_x_right = 9.81 * s1_right;
+        output[1][6] = -a1_x_right;
         // --- left
         let inv_s2_left = 1.0 / s2_left;
         let fk1_x_left = c2_left * inv_s2_left;
+        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+        output[0][9] = ::overact::math::sign(t2_left);
+        let rate_1_left = INV_L_1 * t2_left;
+        output[0][7] = rate_1_left;
+        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+            + s1_left * acceleration[1];
+        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+            + c1_left * acceleration[1] - s1_left * acceleration[0];
+        let t3_left = t2_left * rate_1_left;
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let t4_left = a_on_f1_left + fk1_x_left * t3_left
+            + rate_2_squared_left * (L_2 * inv_s2_left);
+        let rate_dot_1_left = INV_L_1 * t4_left;
+        output[0][1] = rate_dot_1_left;
+        let inv_s2_right = 1.0 / s2_right;
+        let fk1_x_right = c2_right * inv_s2_right;
+        let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
         let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
         let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
         let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
@@ -3168,25 +3474,28 @@ impl FiveBar {
         )?;
         let l_1_per_det_ja = L_1 / det_ja;
         let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
-        let t1_platform = acceleration[1] + 9.81;
         let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
+        let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
+        let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
+        let a2_x_left = c2_left * (a1_x_left - t3_left)
+            + s2_left * (a1_y_left + t4_left);
+        output[0][15] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
+        let t1_platform = acceleration[1] + 9.81;
+        output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
         let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
         let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
-        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
-            + s1_left * acceleration[1];
-        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
-            + c1_left * acceleration[1] - s1_left * acceleration[0];
-        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
-        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
-        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
-        let rate_1_left = INV_L_1 * t2_left;
-        let t3_left = t2_left * rate_1_left;
-        let k2_left = INV_L_2 * inv_s2_left;
-        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
-        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let t4_left = a_on_f1_left + fk1_x_left * t3_left
-            + rate_2_squared_left * (L_2 * inv_s2_left);
-        let rate_dot_1_left = INV_L_1 * t4_left;
+        output[1][0] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform;
+        let minus_rate_dot_2_left = k2_left
+            * (a_on_f2_left + t1_left * minus_rate_2_left);
+        output[0][13] = -(g2_a1_left * minus_rate_dot_2_left);
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left);
+        let minus_g2_a2_left = l_1_per_det_ja * k2_left;
+        output[1][13] = minus_g2_a2_left * minus_rate_dot_2_left;
+        output[1][15] = minus_g2_a2_left * a2_x_left;
+        output[1][17] = ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left);
         // --- right
         let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
             + s1_right * acceleration[1];
@@ -3196,58 +3505,34 @@ impl FiveBar {
         let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
         let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
         let rate_1_right = INV_L_1 * t2_right;
+        output[1][8] = rate_1_right;
         let t3_right = t2_right * rate_1_right;
         let k2_right = INV_L_2 * inv_s2_right;
         let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let t4_right = a_on_f1_right + fk1_x_right * t3_right
             + rate_2_squared_right * (L_2 * inv_s2_right);
-        let rate_dot_1_right = INV_L_1 * t4_right;
-        let a1_y_left = 9.81 * c1_left;
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_left = 9.81 * s1_left;
-        let a1_x_right = 9.81 * s1_right;
-        let minus_g2_vx_left = c1_left * k2_left;
-        let minus_g2_vy_left = s1_left * k2_left;
-        let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
-        let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
-        let minus_rate_dot_2_left = k2_left
-            * (a_on_f2_left + t1_left * minus_rate_2_left);
-        let minus_g2_a2_left = l_1_per_det_ja * k2_left;
-        let g2_a1_right = l_1_per_det_ja * k2_right;
         let a_on_f2_right = c1_dvx_plus_s1_dvy_right + t3_right;
-        let minus_rate_dot_2_right = k2_right
-            * (a_on_f2_right + t1_right * minus_rate_2_right);
         let minus_g2_vy_right = s1_right * k2_right;
         let minus_g2_vx_right = c1_right * k2_right;
         let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
             - minus_g2_vx_right * vx_by_a2;
-        let a2_x_left = c2_left * (a1_x_left - t3_left)
-            + s2_left * (a1_y_left + t4_left);
         let a2_x_right = c2_right * (a1_x_right - t3_right)
             + s2_right * (a1_y_right + t4_right);
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        output[1][16] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right;
+        let g2_a1_right = l_1_per_det_ja * k2_right;
+        let minus_rate_dot_2_right = k2_right
+            * (a_on_f2_right + t1_right * minus_rate_2_right);
+        output[0][14] = -(g2_a1_right * minus_rate_dot_2_right);
+        let rate_dot_1_right = INV_L_1 * t4_right;
+        output[1][2] = rate_dot_1_right;
+        output[1][10] = ::overact::math::sign(t2_right);
+        output[1][14] = -(g2_a2_right * minus_rate_dot_2_right);
+        output[0][16] = -(g2_a1_right * a2_x_right);
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        ::core::result::Result::Ok([
-            [
-                vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0], rate_dot_1_left, 0.0,
-                a1_y_left, 0.0, -a1_x_left, 0.0, rate_1_left, 0.0, ::overact::math::sign(t2_left),
-                0.0, 1.0, 0.0, -(g2_a1_left * minus_rate_dot_2_left),
-                -(g2_a1_right * minus_rate_dot_2_right),
-                L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
-                -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
-            ],
-            [
-                vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform, 0.0, rate_dot_1_right,
-                0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
-                ::overact::math::sign(t2_right), 0.0, 1.0, minus_g2_a2_left * minus_rate_dot_2_left,
-                -(g2_a2_right * minus_rate_dot_2_right), minus_g2_a2_left * a2_x_left,
-                L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right,
-                ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left),
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
-            ],
-        ])
+        output[0][18] = -::overact::math::signed(g2_a1_right, minus_qd_2_right);
+        output[1][18] = -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right);
+        ::core::result::Result::Ok(())
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3270,6 +3555,25 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 19]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -3277,7 +3581,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -3290,21 +3594,28 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            // --- right
-            let d_x_right = pose[0] - HALF;
-            let y_squared = pose[1] * pose[1];
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            let inv_rho_squared_right = 1.0 / rho_squared_right;
-            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
-                - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let l2_y_right = pose[1] - l1_y_right;
-            let det_right = rho_squared_right * h_right;
-            let k_right = 1.0 / det_right;
-            let g1_vy_right = l2_y_right * k_right;
+            output[0][1] = actuator_accelerations[0];
+            output[0][2] = 0.0;
+            output[0][4] = 0.0;
+            output[0][6] = 0.0;
+            output[0][7] = actuator_velocities[0];
+            output[0][8] = 0.0;
+            output[0][10] = 0.0;
+            output[0][11] = 1.0;
+            output[0][12] = 0.0;
+            output[1][1] = 0.0;
+            output[1][2] = actuator_accelerations[1];
+            output[1][3] = 0.0;
+            output[1][5] = 0.0;
+            output[1][7] = 0.0;
+            output[1][8] = actuator_velocities[1];
+            output[1][9] = 0.0;
+            output[1][11] = 0.0;
+            output[1][12] = 1.0;
+            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]);
+            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]);
             // --- left
+            let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
@@ -3315,6 +3626,30 @@ impl FiveBar {
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = bias_a1_y_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = -bias_a1_x_left;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[1][4] = bias_a1_y_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[1][6] = -bias_a1_x_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let det_right = rho_squared_right * h_right;
+            let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            // --- left
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -3323,10 +3658,8 @@ impl FiveBar {
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
@@ -3342,6 +3675,25 @@ impl FiveBar {
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_det_ja = 1.0 / det_ja;
+            let rate_1_squared_left = actuator_velocities[0]
+                * actuator_velocities[0];
+            let t2_left = rho_squared_left - 0.1025;
+            let g2_a2_left = k_left * inv_det_ja;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+            output[1][15] = -(g2_a2_left * a2_x_left);
+            let rate_1_squared_right = actuator_velocities[1]
+                * actuator_velocities[1];
+            let t2_right = rho_squared_right - 0.1025;
+            let g2_a1_right = k_right * inv_det_ja;
+            let c2_right = INV_HALF * t2_right;
+            let s2_right = 20.0 * det_right;
+            let a2_x_right = c2_right
+                * (bias_a1_x_right - L_1 * rate_1_squared_right)
+                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            output[0][16] = -(g2_a1_right * a2_x_right);
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
             let g2_vy_left = l1_y_left * k_left;
             let vy = inv_det_ja
@@ -3354,9 +3706,6 @@ impl FiveBar {
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-            let rate_1_squared_left = actuator_velocities[0]
-                * actuator_velocities[0];
-            let t2_left = rho_squared_left - 0.1025;
             let t3_left = 0.5 * t2_left;
             let minus_bias_rate_dot_1_left = k_left
                 * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
@@ -3368,9 +3717,6 @@ impl FiveBar {
             let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-            let rate_1_squared_right = actuator_velocities[1]
-                * actuator_velocities[1];
-            let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
@@ -3383,21 +3729,15 @@ impl FiveBar {
             let dvy = inv_det_ja
                 * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
-            let t1_platform = dvy + 9.81;
-            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            let bias_a1_x_right = 49.05 * l1_y_right;
             let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
             let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
                 - minus_bias_a_on_f2_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
-            let g2_a2_left = k_left * inv_det_ja;
-            let g2_a1_right = k_right * inv_det_ja;
+            output[0][13] = -(g2_a1_left * minus_rate_dot_2_left);
+            let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+            let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
@@ -3405,39 +3745,27 @@ impl FiveBar {
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
                 - minus_g2_vy_right * vy_by_a2;
-            let c2_left = INV_HALF * t2_left;
-            let minus_s2_left = 20.0 * det_left;
-            let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-                - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-            let c2_right = INV_HALF * t2_right;
-            let s2_right = 20.0 * det_right;
-            let a2_x_right = c2_right
-                * (bias_a1_x_right - L_1 * rate_1_squared_right)
-                + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+            output[1][14] = g2_a2_right * rate_dot_2_right;
+            let t1_platform = dvy + 9.81;
+            output[0][0] = minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform;
+            output[1][0] = minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform;
+            output[0][15] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left);
+            output[1][16] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right);
+            output[1][13] = -(g2_a2_left * minus_rate_dot_2_left);
+            output[0][14] = g2_a1_right * rate_dot_2_right;
             let qd_2_left = rate_2_left - actuator_velocities[0];
+            output[0][17] = ::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                qd_2_left,
+            );
+            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            ::core::result::Result::Ok([
-                [
-                    minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform, actuator_accelerations[0],
-                    0.0, bias_a1_y_left, 0.0, -bias_a1_x_left, 0.0, actuator_velocities[0], 0.0,
-                    ::overact::math::wide::sign(actuator_velocities[0]), 0.0, 1.0, 0.0,
-                    -(g2_a1_left * minus_rate_dot_2_left), g2_a1_right * rate_dot_2_right,
-                    -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left), -(g2_a1_right * a2_x_right),
-                    ::overact::math::wide::signed(g2_a1_left - 1.0, qd_2_left),
-                    ::overact::math::wide::signed(g2_a1_right, qd_2_right),
-                ],
-                [
-                    minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform, 0.0,
-                    actuator_accelerations[1], 0.0, bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0,
-                    actuator_velocities[1], 0.0,
-                    ::overact::math::wide::sign(actuator_velocities[1]), 0.0, 1.0,
-                    -(g2_a2_left * minus_rate_dot_2_left), g2_a2_right * rate_dot_2_right,
-                    -(g2_a2_left * a2_x_left),
-                    -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
-                    ::overact::math::wide::signed(g2_a2_left, qd_2_left),
-                    ::overact::math::wide::signed(g2_a2_right - 1.0, qd_2_right),
-                ],
-            ])
+            output[0][18] = ::overact::math::wide::signed(g2_a1_right, qd_2_right);
+            output[1][18] = ::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                qd_2_right,
+            );
+            ::core::result::Result::Ok(())
         })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -5762,34 +6090,38 @@ impl ::overact::Model for FiveBar {
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform(
+                    .fill(|row, output| Self::idm_red_platform_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators(
+                    .fill(|row, output| Self::idm_red_actuators_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform_base(
+                    .fill(|row, output| Self::idm_red_platform_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators_base(
+                    .fill(|row, output| Self::idm_red_actuators_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::ProjectPlatform => {

@@ -56,6 +56,8 @@
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
 ///
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -1492,10 +1494,27 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -1510,49 +1529,77 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            output[0][30] = acceleration[0];
+            output[1][30] = acceleration[1];
             // --- leg1
-            let half_x = 0.5 * pose[0];
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][4] = g1_vy_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][4] = -minus_g1_vx_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][2] = g1_vy_leg1 * rate_1_leg1;
+            output[0][3] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t1_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
+            output[1][9] = d_x_leg1 * t1_leg1;
+            output[0][9] = pose[0] * t1_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[0][0] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = zz_2_leg1_on_vx;
             let inv_l_1_dvx = INV_L_1 * acceleration[0];
-            let inv_l_1_dvy = INV_L_1 * acceleration[1];
+            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t2_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1);
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[1][0] = -minus_zz_1_leg1_on_vy;
+            output[1][1] = -minus_zz_1_leg1_on_vy;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            let inv_l_1_dvy = INV_L_1 * acceleration[1];
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
             let d_y_leg2 = half_x - t1_leg3;
@@ -1574,8 +1621,19 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][14] = g1_vx_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][14] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][12] = g1_vx_leg2 * rate_1_leg2;
+            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][13] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t2_leg3 = INV_L_1 * y_plus_half_radius;
@@ -1588,23 +1646,38 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            output[0][19] = -(t3_leg2 * t4_leg2);
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
             let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            output[0][10] = -minus_zz_1_leg2_on_vx;
+            output[0][11] = -minus_zz_1_leg2_on_vx;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_vx;
+            output[0][16] = inv_l_1_dvx
+                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+                + minus_g1_vy_leg2 * a_on_f2_leg2);
+            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[1][10] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy;
             let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            output[1][15] = zz_2_leg2_on_vy;
+            output[1][16] = inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            output[1][19] = -(t2_leg3 * t4_leg2);
+            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx);
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
             // --- leg3
             let t3_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
@@ -1622,8 +1695,19 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][24] = g1_vx_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][24] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][22] = g1_vx_leg3 * rate_1_leg3;
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][23] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
@@ -1635,89 +1719,39 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            output[0][29] = -(t4_leg3 * t5_leg3);
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            output[0][20] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_vx;
+            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][20] = -minus_zz_1_leg3_on_vy;
+            output[1][21] = -minus_zz_1_leg3_on_vy;
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            ::core::result::Result::Ok([
-                [
-                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    -minus_g1_vx_leg1, zz_2_leg1_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                    L_1_SQUARED * zz_1_leg1_on_vx,
-                    pose[0] * t2_leg1,
-                    -minus_zz_1_leg2_on_vx,
-                    -minus_zz_1_leg2_on_vx,
-                    g1_vx_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    g1_vx_leg2,
-                    zz_2_leg2_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
-                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                    -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
-                    -(t3_leg2 * t4_leg2),
-                    zz_1_leg3_on_vx,
-                    zz_1_leg3_on_vx,
-                    g1_vx_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    g1_vx_leg3,
-                    zz_2_leg3_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                    minus_g2_vx_leg3 * a_on_f1_leg3
-                        + g1_vx_leg3 * minus_a_on_f2_leg3,
-                    L_1_SQUARED * zz_1_leg3_on_vx,
-                    -(t4_leg3 * t5_leg3),
-                    acceleration[0],
-                ],
-                [
-                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
-                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                    d_x_leg1 * t2_leg1,
-                    zz_1_leg2_on_vy,
-                    zz_1_leg2_on_vy,
-                    -(minus_g1_vy_leg2 * rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
-                    -minus_g1_vy_leg2,
-                    zz_2_leg2_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
-                    -(minus_g2_vy_leg2 * a_on_f1_leg2
-                        + minus_g1_vy_leg2 * a_on_f2_leg2),
-                    L_1_SQUARED * zz_1_leg2_on_vy,
-                    -(t2_leg3 * t4_leg2),
-                    -minus_zz_1_leg3_on_vy,
-                    -minus_zz_1_leg3_on_vy,
-                    -(minus_g1_vy_leg3 * rate_1_leg3),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
-                    -minus_g1_vy_leg3,
-                    zz_2_leg3_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                    minus_g2_vy_leg3 * a_on_f1_leg3
-                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                    -(t2_leg3 * t5_leg3),
-                    acceleration[1],
-                ],
-            ])
+            output[1][25] = zz_2_leg3_on_vy;
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
+            output[1][29] = -(t2_leg3 * t5_leg3);
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -1741,19 +1775,40 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
             /// l_1²
             const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            output[0][30] = acceleration[0];
+            output[1][30] = acceleration[1];
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
             (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -1763,10 +1818,21 @@ impl ThreeLegPoint {
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
             // --- leg1
-            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            output[0][4] = -minus_g1_vx_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            output[1][4] = g1_vy_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][2] = g1_vy_leg1 * rate_1_leg1;
+            output[0][3] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -1775,32 +1841,62 @@ impl ThreeLegPoint {
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
             let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-            let g1_vy_leg1 = c12_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            output[0][7] = g2_vx_leg1 * a_on_f1_leg1
+                - minus_g1_vx_leg1 * a_on_f2_leg1;
+            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[0][9] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-                + l_1_rate_1_squared_leg1;
+            output[0][0] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
             let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_vx;
             let inv_l_1_dvx = INV_L_1 * acceleration[0];
-            let inv_l_1_dvy = INV_L_1 * acceleration[1];
-            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
-            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[0][6] = inv_l_1_dvx
+                - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx);
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+                - minus_g2_vy_leg1 * a_on_f1_leg1;
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][9] = -::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                qd_2_leg1,
+            );
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[1][0] = -minus_zz_1_leg1_on_vy;
+            output[1][1] = -minus_zz_1_leg1_on_vy;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            let inv_l_1_dvy = INV_L_1 * acceleration[1];
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
             let k_leg2 = INV_L_1 / s2_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][14] = g1_vx_leg2;
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][14] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][12] = g1_vx_leg2 * rate_1_leg2;
+            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][13] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -1811,30 +1907,60 @@ impl ThreeLegPoint {
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - c2_leg2 * l_1_rate_1_squared_leg2);
             let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[0][10] = -minus_zz_1_leg2_on_vx;
+            output[0][11] = -minus_zz_1_leg2_on_vx;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_vx;
+            output[0][16] = inv_l_1_dvx
+                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][19] = -::overact::math::wide::signed(
+                minus_gq2_vx_leg2,
+                qd_2_leg2,
+            );
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+                - minus_g1_vy_leg2 * a_on_f2_leg2;
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][19] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
+            let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[1][10] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy;
+            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_vy;
+            output[1][16] = inv_l_1_dvy
+                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
+            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx);
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
             let k_leg3 = INV_L_1 / s2_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][24] = g1_vx_leg3;
             let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][24] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][22] = g1_vx_leg3 * rate_1_leg3;
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][23] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -1845,69 +1971,43 @@ impl ThreeLegPoint {
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            output[0][20] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
             let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
+            output[0][25] = -minus_zz_2_leg3_on_vx;
+            output[0][26] = inv_l_1_dvx
+                - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx);
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][20] = -minus_zz_1_leg3_on_vy;
+            output[1][21] = -minus_zz_1_leg3_on_vy;
             let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_vy;
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            output[0][29] = -::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                qd_2_leg3,
+            );
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                - g1_vx_leg3 * a_on_f2_leg3;
+            output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3
+                - g2_vy_leg3 * a_on_f1_leg3;
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            ::core::result::Result::Ok([
-                [
-                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    -minus_g1_vx_leg1, -minus_zz_2_leg1_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx),
-                    g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
-                    L_1_SQUARED * zz_1_leg1_on_vx,
-                    ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1), -minus_zz_1_leg2_on_vx,
-                    -minus_zz_1_leg2_on_vx, g1_vx_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
-                    zz_2_leg2_on_vx, inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
-                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                    -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
-                    -::overact::math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2), zz_1_leg3_on_vx,
-                    zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
-                    -minus_zz_2_leg3_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx),
-                    minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
-                    L_1_SQUARED * zz_1_leg3_on_vx,
-                    -::overact::math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3), acceleration[0],
-                ],
-                [
-                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                    g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
-                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                    -::overact::math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1), zz_1_leg2_on_vy,
-                    zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
-                    -minus_g1_vy_leg2, -minus_zz_2_leg2_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
-                    g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
-                    L_1_SQUARED * zz_1_leg2_on_vy,
-                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2), -minus_zz_1_leg3_on_vy,
-                    -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
-                    -minus_g1_vy_leg3, zz_2_leg3_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                    minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
-                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                    ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
-                ],
-            ])
+            output[1][29] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3);
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -1932,6 +2032,25 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_from_actuators_into(
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -1939,7 +2058,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -1955,19 +2074,24 @@ impl ThreeLegPoint {
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
             // --- leg1
-            let half_x = 0.5 * pose[0];
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][4] = g1_vy_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][4] = -minus_g1_vx_leg1;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -1990,15 +2114,13 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][14] = g1_vx_leg2;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
-            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let t1_leg3 = y_plus_half_radius * INV_L_1;
             let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
             let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            output[1][14] = g1_vy_leg2;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
@@ -2010,15 +2132,17 @@ impl ThreeLegPoint {
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][24] = g1_vx_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][24] = -minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -2044,15 +2168,60 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
                 / pivot_2;
+            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][2] = g1_vy_leg1 * rate_1_leg1;
+            output[0][3] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+            output[0][12] = g1_vx_leg2 * rate_1_leg2;
+            output[1][12] = g1_vy_leg2 * rate_1_leg2;
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            output[0][22] = g1_vx_leg3 * rate_1_leg3;
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][23] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            output[1][9] = d_x_leg1 * t1_leg1;
+            output[0][9] = pose[0] * t1_leg1;
+            // --- leg2
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let t3_leg2 = t1_leg2 * INV_L_1;
             let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
-            // --- leg2
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            output[0][19] = -(t3_leg2 * t4_leg2);
+            output[1][19] = -(t1_leg3 * t4_leg2);
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t3_leg3 = t2_leg3 * INV_L_1;
+            let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            output[0][29] = -(t3_leg3 * t4_leg3);
+            output[1][29] = -(t1_leg3 * t4_leg3);
+            // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -2062,28 +2231,17 @@ impl ThreeLegPoint {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 - bias_rate_dot_1_leg1;
             // --- leg3
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
-            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t3_leg3 = t2_leg3 * INV_L_1;
-            let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
-            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -2099,124 +2257,102 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 + minus_l_2_1 * t2) / pivot_2;
+            output[1][30] = dvy;
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+            output[0][30] = dvx;
+            // --- leg2
+            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            // --- leg3
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3;
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
-            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[0][0] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx;
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = zz_2_leg1_on_vx;
             let inv_l_1_dvx = INV_L_1 * dvx;
-            let inv_l_1_dvy = INV_L_1 * dvy;
+            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t3_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1);
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1;
             // --- leg2
-            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
-            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
             let rate_dot_1_leg2 = k_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
             let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
-            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
+            output[0][10] = zz_1_leg2_on_vx;
+            output[0][11] = zz_1_leg2_on_vx;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            output[0][15] = zz_2_leg2_on_vx;
+            output[0][16] = inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx);
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-                + minus_bias_a_on_f2_leg3;
+            output[0][20] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_vx;
+            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+                - g2_vy_leg2 * minus_a_on_f1_leg2;
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[1][0] = -minus_zz_1_leg1_on_vy;
+            output[1][1] = -minus_zz_1_leg1_on_vy;
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
+            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+            output[1][10] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy;
+            let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_vy;
+            let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][20] = -minus_zz_1_leg3_on_vy;
+            output[1][21] = -minus_zz_1_leg3_on_vy;
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            ::core::result::Result::Ok([
-                [
-                    zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    -minus_g1_vx_leg1, zz_2_leg1_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
-                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                    L_1_SQUARED * zz_1_leg1_on_vx,
-                    pose[0] * t3_leg1,
-                    zz_1_leg2_on_vx,
-                    zz_1_leg2_on_vx,
-                    g1_vx_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    g1_vx_leg2,
-                    zz_2_leg2_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx),
-                    g1_vx_leg2 * a_on_f2_leg2
-                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                    L_1_SQUARED * zz_1_leg2_on_vx,
-                    -(t3_leg2 * t4_leg2),
-                    zz_1_leg3_on_vx,
-                    zz_1_leg3_on_vx,
-                    g1_vx_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3),
-                    g1_vx_leg3,
-                    zz_2_leg3_on_vx,
-                    inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
-                    minus_g2_vx_leg3 * a_on_f1_leg3
-                        + g1_vx_leg3 * minus_a_on_f2_leg3,
-                    L_1_SQUARED * zz_1_leg3_on_vx,
-                    -(t3_leg3 * t4_leg3),
-                    dvx,
-                ],
-                [
-                    -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                    zz_2_leg1_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
-                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
-                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                    -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                    d_x_leg1 * t3_leg1,
-                    zz_1_leg2_on_vy,
-                    zz_1_leg2_on_vy,
-                    g1_vy_leg2 * rate_1_leg2,
-                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
-                    g1_vy_leg2,
-                    -minus_zz_2_leg2_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
-                    g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
-                    L_1_SQUARED * zz_1_leg2_on_vy,
-                    -(t1_leg3 * t4_leg2),
-                    -minus_zz_1_leg3_on_vy,
-                    -minus_zz_1_leg3_on_vy,
-                    -(minus_g1_vy_leg3 * rate_1_leg3),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3),
-                    -minus_g1_vy_leg3,
-                    zz_2_leg3_on_vy,
-                    inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
-                    minus_g2_vy_leg3 * a_on_f1_leg3
-                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                    -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                    -(t1_leg3 * t4_leg3),
-                    dvy,
-                ],
-            ])
+            output[1][25] = zz_2_leg3_on_vy;
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            let inv_l_1_dvy = INV_L_1 * dvy;
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
+            output[1][16] = inv_l_1_dvy
+                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
+            output[0][18] = L_1_SQUARED * zz_1_leg2_on_vx;
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2238,10 +2374,27 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -2256,6 +2409,12 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            output[0][4] = 1.0;
+            output[0][10..15].fill(0.0);
+            output[0][18] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][14] = 1.0;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -2270,6 +2429,11 @@ impl ThreeLegPoint {
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
@@ -2277,13 +2441,13 @@ impl ThreeLegPoint {
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            output[0][0] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -2314,27 +2478,47 @@ impl ThreeLegPoint {
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
             let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][9] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            output[0][9] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][12] = rate_1_leg2;
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1];
+            output[0][30] = -minus_m_platform_on_q1_leg1;
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1];
+            output[1][30] = -minus_m_platform_on_q1_leg2;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -2346,22 +2530,39 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            output[1][10] = -minus_rate_dot_1_leg2;
+            output[1][11] = -minus_rate_dot_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
+            output[0][19] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_q1_leg1;
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -2389,6 +2590,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][24] = g1_a1_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][24] = g1_a2_leg3;
+            output[1][22] = g1_a2_leg3 * rate_1_leg3;
+            output[0][22] = g1_a1_leg3 * rate_1_leg3;
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -2400,16 +2610,14 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[0][20] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
@@ -2417,76 +2625,32 @@ impl ThreeLegPoint {
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_q1_leg1;
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2;
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                        - t1_platform,
-                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                    -::overact::math::wide::signed(
-                        g2_a1_leg1 - 1.0,
-                        minus_qd_2_leg1,
-                    ),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    zz_2_leg2_on_q1_leg1,
-                    -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
-                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                    0.0,
-                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg1,
-                    zz_1_leg3_on_q1_leg1,
-                    g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
-                    g1_a1_leg3,
-                    zz_2_leg3_on_q1_leg1,
-                    -(t1_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(
-                        g2_a1_leg3 - g1_a1_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1,
-                    0.0, -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2, rate_1_leg2,
-                    ::overact::math::wide::sign(rate_1_leg2), 1.0, -minus_zz_2_leg2_on_q1_leg2,
-                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
-                        - t2_platform,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg2,
-                    zz_1_leg3_on_q1_leg2,
-                    g1_a2_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
-                    g1_a2_leg3,
-                    zz_2_leg3_on_q1_leg2,
-                    -(t2_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                    ::overact::math::wide::signed(
-                        g2_a2_leg3 - g1_a2_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg2,
-                ],
-            ])
+            output[0][29] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[1][29] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2510,19 +2674,44 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
             /// l_1²
             const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            output[0][4] = 1.0;
+            output[0][10..15].fill(0.0);
+            output[0][18] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][14] = 1.0;
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
             (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -2535,6 +2724,11 @@ impl ThreeLegPoint {
             let k_leg1 = INV_L_1 / s2_leg1;
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -2542,13 +2736,13 @@ impl ThreeLegPoint {
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-            let g1_vy_leg1 = c12_leg1 * k_leg1;
-            let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let v2_by_1_y_leg1 = L_1 * c2_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][0] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -2565,28 +2759,45 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - g2_vx_leg1 * minus_vx_by_a1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + L_1 * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
+            output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
+            output[1][7] = g2_a2_leg1 * a_on_f1_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
+            output[0][9] = ::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                qd_2_leg1,
+            );
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][12] = rate_1_leg2;
             // --- platform
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1];
+            output[0][30] = -minus_m_platform_on_q1_leg1;
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1];
+            output[1][30] = -minus_m_platform_on_q1_leg2;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -2597,22 +2808,36 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
-                - g2_vy_leg2 * minus_vy_by_a1;
+            output[1][10] = -minus_rate_dot_1_leg2;
+            output[1][11] = -minus_rate_dot_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
+                - g2_vy_leg2 * minus_vy_by_a1;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][19] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
+            output[0][17] = g2_a1_leg2 * a_on_f1_leg2;
+            let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = -minus_zz_2_leg2_on_q1_leg1;
+            output[0][16] = L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform;
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -2623,6 +2848,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][24] = g1_a1_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][24] = g1_a2_leg3;
+            output[1][22] = g1_a2_leg3 * rate_1_leg3;
+            output[0][22] = g1_a1_leg3 * rate_1_leg3;
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -2632,15 +2866,13 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = L_1 * c2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[0][20] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
@@ -2648,73 +2880,32 @@ impl ThreeLegPoint {
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_q1_leg1;
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2;
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                        - t1_platform,
-                    a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                    ::overact::math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    -minus_zz_2_leg2_on_q1_leg1,
-                    L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform,
-                    g2_a1_leg2 * a_on_f1_leg2,
-                    0.0,
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg1,
-                    zz_1_leg3_on_q1_leg1,
-                    g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
-                    g1_a1_leg3,
-                    zz_2_leg3_on_q1_leg1,
-                    -(t1_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(
-                        g2_a1_leg3 - g1_a1_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * a_on_f1_leg1, 0.0,
-                    ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1), -minus_rate_dot_1_leg2,
-                    -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::wide::sign(rate_1_leg2),
-                    1.0, -minus_zz_2_leg2_on_q1_leg2,
-                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
-                        - t2_platform,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg2,
-                    zz_1_leg3_on_q1_leg2,
-                    g1_a2_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
-                    g1_a2_leg3,
-                    zz_2_leg3_on_q1_leg2,
-                    -(t2_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                    ::overact::math::wide::signed(
-                        g2_a2_leg3 - g1_a2_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg2,
-                ],
-            ])
+            output[0][29] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[1][29] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -2739,6 +2930,25 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_from_actuators_into(
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 31]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -2746,7 +2956,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -2761,6 +2971,12 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            output[0][4] = 1.0;
+            output[0][10..15].fill(0.0);
+            output[0][18] = 0.0;
+            output[1][0..5].fill(0.0);
+            output[1][8] = 0.0;
+            output[1][14] = 1.0;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -2815,12 +3031,6 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-                + g1_vx_leg3 * g1_vx_leg3;
-            let inv_pivot_1 = 1.0 / s_1_1;
-            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-                + INV_TWICE_L_1 * l1_x_leg2;
-            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
@@ -2830,12 +3040,43 @@ impl ThreeLegPoint {
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][24] = g1_a1_leg3;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][24] = g1_a2_leg3;
+            let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3;
+            ::overact::guard::platform(
+                s_1_1,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                26.146658848896372,
+                ::overact::ActuatorGroup::All,
+            )?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -2844,15 +3085,55 @@ impl ThreeLegPoint {
                 * (g1_vy_leg1 * actuator_velocities[0]
                     - minus_g1_vy_leg2 * actuator_velocities[1]
                     - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            output[1][12] = rate_1_leg2;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            output[0][22] = g1_a1_leg3 * rate_1_leg3;
+            output[1][22] = g1_a2_leg3 * rate_1_leg3;
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][9] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            output[1][9] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            // --- leg2
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-            // --- leg2
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            output[0][19] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -2862,12 +3143,8 @@ impl ThreeLegPoint {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -2884,7 +3161,6 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -2902,77 +3178,40 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
-                - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.09578052481963,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
-            ::overact::guard::platform(
-                pivot_2,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
-            // --- leg1
+            output[0][0] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1;
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
                 + minus_vy_by_a1 * dvy;
+            output[0][30] = -minus_m_platform_on_q1_leg1;
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
-                + minus_vy_by_a2 * dvy;
-            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            // --- leg2
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
-                - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform;
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[0][20] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -2981,76 +3220,58 @@ impl ThreeLegPoint {
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_q1_leg1;
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
+                + minus_vy_by_a2 * dvy;
+            output[1][30] = -minus_m_platform_on_q1_leg2;
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][10] = -minus_rate_dot_1_leg2;
+            output[1][11] = -minus_rate_dot_1_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                    ::overact::math::wide::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
-                    L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                        - t1_platform,
-                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg1),
-                    -::overact::math::wide::signed(
-                        g2_a1_leg1 - 1.0,
-                        minus_qd_2_leg1,
-                    ),
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    zz_2_leg2_on_q1_leg1,
-                    -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
-                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                    0.0,
-                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg1,
-                    zz_1_leg3_on_q1_leg1,
-                    g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
-                    g1_a1_leg3,
-                    zz_2_leg3_on_q1_leg1,
-                    -(t1_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg1,
-                    ::overact::math::wide::signed(
-                        g2_a1_leg3 - g1_a1_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg1,
-                ],
-                [
-                    0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
-                    L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1,
-                    0.0, -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2, rate_1_leg2,
-                    ::overact::math::wide::sign(rate_1_leg2), 1.0, -minus_zz_2_leg2_on_q1_leg2,
-                    L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2)
-                        - t2_platform,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(L_1_SQUARED * minus_rate_dot_1_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    zz_1_leg3_on_q1_leg2,
-                    zz_1_leg3_on_q1_leg2,
-                    g1_a2_leg3 * rate_1_leg3,
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
-                    g1_a2_leg3,
-                    zz_2_leg3_on_q1_leg2,
-                    -(t2_platform
-                        + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    L_1_SQUARED * zz_1_leg3_on_q1_leg2,
-                    ::overact::math::wide::signed(
-                        g2_a2_leg3 - g1_a2_leg3,
-                        qd_2_leg3,
-                    ),
-                    -minus_m_platform_on_q1_leg2,
-                ],
-            ])
+            output[1][29] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_q1_leg1;
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2;
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[0][29] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3072,10 +3293,27 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -3090,35 +3328,64 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            output[0][0] = acceleration[0];
+            output[1][0] = acceleration[1];
             // --- leg1
-            let half_x = 0.5 * pose[0];
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][10] = g1_vy_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][10] = -minus_g1_vx_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][4] = g1_vy_leg1 * rate_1_leg1;
+            output[0][7] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            output[1][19] = d_x_leg1 * t1_leg1;
+            output[0][19] = pose[0] * t1_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1);
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
             let d_y_leg2 = half_x - t1_leg3;
@@ -3140,8 +3407,19 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][11] = g1_vx_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][11] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][5] = g1_vx_leg2 * rate_1_leg2;
+            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][8] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t2_leg3 = y_plus_half_radius * INV_L_1;
@@ -3154,13 +3432,27 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            output[0][20] = -(t3_leg2 * t4_leg2);
+            output[1][20] = -(t2_leg3 * t4_leg2);
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2);
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+                + minus_g1_vy_leg2 * a_on_f2_leg2);
+            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
             // --- leg3
             let t3_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
@@ -3178,8 +3470,19 @@ impl ThreeLegPoint {
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][12] = g1_vx_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][12] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][6] = g1_vx_leg3 * rate_1_leg3;
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
@@ -3191,77 +3494,28 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            output[0][21] = -(t4_leg3 * t5_leg3);
+            output[1][21] = -(t2_leg3 * t5_leg3);
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-                + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            // --- leg1
-            let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t2_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
-            let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
-            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            ::core::result::Result::Ok([
-                [
-                    acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                    -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
-                    -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
-                    g1_vx_leg3 * rate_1_leg3,
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
-                    g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                    minus_g2_vx_leg3 * a_on_f1_leg3
-                        + g1_vx_leg3 * minus_a_on_f2_leg3,
-                    pose[0] * t2_leg1,
-                    -(t3_leg2 * t4_leg2),
-                    -(t4_leg3 * t5_leg3),
-                ],
-                [
-                    acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                    minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
-                    g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
-                    -(minus_g1_vy_leg3 * rate_1_leg3),
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                    -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                    minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                    minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
-                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                    -(minus_g2_vy_leg2 * a_on_f1_leg2
-                        + minus_g1_vy_leg2 * a_on_f2_leg2),
-                    minus_g2_vy_leg3 * a_on_f1_leg3
-                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                    d_x_leg1 * t2_leg1,
-                    -(t2_leg3 * t4_leg2),
-                    -(t2_leg3 * t5_leg3),
-                ],
-            ])
+            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
+            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3285,17 +3539,38 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
+            output[0][0] = acceleration[0];
+            output[1][0] = acceleration[1];
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
             (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -3305,10 +3580,21 @@ impl ThreeLegPoint {
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
             // --- leg1
-            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+            output[0][10] = -minus_g1_vx_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let g1_vy_leg1 = c12_leg1 * k_leg1;
+            output[1][10] = g1_vy_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][4] = g1_vy_leg1 * rate_1_leg1;
+            output[0][7] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -3317,19 +3603,48 @@ impl ThreeLegPoint {
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
             let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
-            let g1_vy_leg1 = c12_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + l_1_rate_1_squared_leg1;
+            output[0][16] = g2_vx_leg1 * a_on_f1_leg1
+                - minus_g1_vx_leg1 * a_on_f2_leg1;
+            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[0][19] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+            output[0][13] = -(g2_vx_leg1 * minus_rate_dot_2_leg1);
+            output[1][16] = g1_vy_leg1 * a_on_f2_leg1
+                - minus_g2_vy_leg1 * a_on_f1_leg1;
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][19] = -::overact::math::wide::signed(
+                minus_gq2_vy_leg1,
+                qd_2_leg1,
+            );
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
             let k_leg2 = INV_L_1 / s2_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][11] = g1_vx_leg2;
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][11] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][5] = g1_vx_leg2 * rate_1_leg2;
+            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][8] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -3339,19 +3654,48 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][20] = -::overact::math::wide::signed(
+                minus_gq2_vx_leg2,
+                qd_2_leg2,
+            );
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2);
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+                - minus_g1_vy_leg2 * a_on_f2_leg2;
+            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][20] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
+            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2);
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
             let k_leg3 = INV_L_1 / s2_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][12] = g1_vx_leg3;
             let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][12] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][6] = g1_vx_leg3 * rate_1_leg3;
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -3362,69 +3706,31 @@ impl ThreeLegPoint {
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
-            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-                + l_1_rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-            let rate_dot_2_leg3 = k_leg3
-                * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
-            let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
-            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                - g1_vx_leg3 * a_on_f2_leg3;
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+            output[0][21] = -::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                qd_2_leg3,
+            );
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
+            output[0][15] = -(minus_g2_vx_leg3 * rate_dot_2_leg3);
+            output[1][18] = minus_g1_vy_leg3 * a_on_f2_leg3
+                - g2_vy_leg3 * a_on_f1_leg3;
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            ::core::result::Result::Ok([
-                [
-                    acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                    -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
-                    -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
-                    g1_vx_leg3 * rate_1_leg3,
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
-                    g1_vx_leg2, g1_vx_leg3, -(g2_vx_leg1 * minus_rate_dot_2_leg1),
-                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                    g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
-                    g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
-                    minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
-                    ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1),
-                    -::overact::math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2),
-                    -::overact::math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3),
-                ],
-                [
-                    acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                    minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
-                    g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
-                    -(minus_g1_vy_leg3 * rate_1_leg3),
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
-                    -::overact::math::wide::signed(minus_g1_vy_leg2, rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                    -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                    -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                    g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
-                    g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
-                    minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
-                    -::overact::math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1),
-                    ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3),
-                ],
-            ])
+            output[1][21] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3);
+            output[1][15] = g2_vy_leg3 * rate_dot_2_leg3;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3449,6 +3755,25 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_platform_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -3456,7 +3781,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -3471,30 +3796,6 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            // --- leg2
-            let t1_leg2 = pose[0] + 0.3031088913245535;
-            let y_plus_half_radius = pose[1] + HALF_RADIUS;
-            let t2_leg2 = 0.5 * y_plus_half_radius;
-            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-            let half_x = 0.5 * pose[0];
-            let t1_leg3 = pose[1] * 0.8660254037844386;
-            let d_y_leg2 = half_x - t1_leg3;
-            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
-                + d_y_leg2 * d_y_leg2;
-            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-                + INV_TWICE_L_1 * l1_x_leg2;
-            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -3506,14 +3807,44 @@ impl ThreeLegPoint {
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][10] = g1_vy_leg1;
+            let half_x = 0.5 * pose[0];
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][10] = -minus_g1_vx_leg1;
+            // --- leg2
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            let d_y_leg2 = half_x - t1_leg3;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][11] = g1_vx_leg2;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
             let t2_leg3 = y_plus_half_radius * INV_L_1;
             let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
             let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            output[1][11] = g1_vy_leg2;
             // --- leg3
             let t3_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
@@ -3525,18 +3856,17 @@ impl ThreeLegPoint {
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][12] = g1_vx_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][12] = -minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -3562,15 +3892,60 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
                 / pivot_2;
+            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
+            output[1][4] = g1_vy_leg1 * rate_1_leg1;
+            output[0][7] = -::overact::math::wide::signed(
+                minus_g1_vx_leg1,
+                rate_1_leg1,
+            );
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+            output[0][5] = g1_vx_leg2 * rate_1_leg2;
+            output[1][5] = g1_vy_leg2 * rate_1_leg2;
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][8] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            output[0][6] = g1_vx_leg3 * rate_1_leg3;
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            output[1][19] = d_x_leg1 * t1_leg1;
+            output[0][19] = pose[0] * t1_leg1;
+            // --- leg2
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let t3_leg2 = t1_leg2 * INV_L_1;
             let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-            let vx = t1 / s_1_1 + minus_l_2_1 * vy;
-            // --- leg2
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            output[0][20] = -(t3_leg2 * t4_leg2);
+            output[1][20] = -(t2_leg3 * t4_leg2);
+            // --- leg3
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+            let t4_leg3 = t3_leg3 * INV_L_1;
+            let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
+            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            output[0][21] = -(t4_leg3 * t5_leg3);
+            output[1][21] = -(t2_leg3 * t5_leg3);
+            // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -3580,28 +3955,17 @@ impl ThreeLegPoint {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-            let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
-            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+            let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
             let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
                 - bias_rate_dot_1_leg1;
             // --- leg3
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
-            let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t4_leg3 = t3_leg3 * INV_L_1;
-            let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
-            let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-            let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -3617,82 +3981,65 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 + minus_l_2_1 * t2) / pivot_2;
+            output[1][0] = dvy;
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
-                - minus_bias_a_on_f1_leg1;
-            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+            output[0][0] = dvx;
+            // --- leg2
             let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
             let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
-            let rate_dot_1_leg2 = k_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+                + minus_bias_a_on_f2_leg3;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            // --- leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
-                + minus_bias_a_on_f2_leg3;
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            let rate_dot_1_leg2 = k_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            output[0][2] = g1_vx_leg2 * rate_dot_1_leg2;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            // --- leg1
+            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t3_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
-            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            ::core::result::Result::Ok([
-                [
-                    dvx, minus_g1_vx_leg1 * minus_rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
-                    g1_vx_leg3 * rate_dot_1_leg3, -(minus_g1_vx_leg1 * rate_1_leg1),
-                    g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                    -::overact::math::wide::signed(minus_g1_vx_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2),
-                    ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1,
-                    g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                    minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                    minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                    -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
-                        + minus_g2_vx_leg1 * minus_a2_x_leg1),
-                    g1_vx_leg2 * a_on_f2_leg2
-                        + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
-                    minus_g2_vx_leg3 * a_on_f1_leg3
-                        + g1_vx_leg3 * minus_a_on_f2_leg3,
-                    pose[0] * t3_leg1,
-                    -(t3_leg2 * t4_leg2),
-                    -(t4_leg3 * t5_leg3),
-                ],
-                [
-                    dvy, -(g1_vy_leg1 * minus_rate_dot_1_leg1), g1_vy_leg2 * rate_dot_1_leg2,
-                    -(minus_g1_vy_leg3 * rate_dot_1_leg3), g1_vy_leg1 * rate_1_leg1,
-                    g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
-                    ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1),
-                    ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2),
-                    -::overact::math::wide::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                    g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                    -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                    g1_vy_leg1 * inv_l_1_a_on_f2_leg1
-                        - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                    g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
-                    minus_g2_vy_leg3 * a_on_f1_leg3
-                        - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                    d_x_leg1 * t3_leg1,
-                    -(t2_leg3 * t4_leg2),
-                    -(t2_leg3 * t5_leg3),
-                ],
-            ])
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1);
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+                - g2_vy_leg2 * minus_a_on_f1_leg2;
+            output[1][2] = g1_vy_leg2 * rate_dot_1_leg2;
+            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2);
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
+            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -3714,10 +4061,27 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+            pose,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_into(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -3732,28 +4096,16 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            // --- leg3
-            let t1_leg3 = pose[0] - 0.3031088913245535;
-            let y_plus_half_radius = pose[1] + HALF_RADIUS;
-            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-            // --- leg2
-            let d_y_leg2 = pose[0] - d_y_leg3;
-            let t1_leg2 = 0.5 * y_plus_half_radius;
-            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-                + t1_leg2;
-            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
-                + d_y_leg2 * d_y_leg2;
-            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-                - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            let k_leg2 = L_1 / det_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[0][2] = 0.0;
+            output[0][5] = 0.0;
+            output[0][8] = 0.0;
+            output[0][10] = 1.0;
+            output[0][11] = 0.0;
+            output[1][1] = 0.0;
+            output[1][4] = 0.0;
+            output[1][7] = 0.0;
+            output[1][10] = 0.0;
+            output[1][11] = 1.0;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -3765,24 +4117,14 @@ impl ThreeLegPoint {
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
-                - g1_vy_leg1 * g1_vx_leg2;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][4] = rate_1_leg1;
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
@@ -3790,12 +4132,73 @@ impl ThreeLegPoint {
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            output[0][1] = -minus_rate_dot_1_leg1;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
             // --- leg2
+            let d_y_leg2 = pose[0] - d_y_leg3;
+            let t1_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+                + t1_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            let k_leg2 = L_1 / det_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            let inv_det_ja = 1.0 / det_ja;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][19] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][5] = rate_1_leg2;
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[0][19] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]);
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1]);
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -3807,12 +4210,32 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2;
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -3840,6 +4263,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][12] = g1_a1_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][12] = g1_a2_leg3;
+            output[1][6] = g1_a2_leg3 * rate_1_leg3;
+            output[0][6] = g1_a1_leg3 * rate_1_leg3;
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -3851,95 +4283,35 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            let v2_by_1_y_leg3 = INV_TWICE_L_1
-                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
-            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-            let rate_dot_2_leg3 = k_leg3
-                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -(minus_vx_by_a1 * acceleration[0]
-                        + minus_vy_by_a1 * acceleration[1]),
-                    -minus_rate_dot_1_leg1,
-                    0.0,
-                    g1_a1_leg3 * rate_dot_1_leg3,
-                    rate_1_leg1,
-                    0.0,
-                    g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg1),
-                    0.0,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
-                    1.0,
-                    0.0,
-                    g1_a1_leg3,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                    minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
-                    g2_a1_leg3 * rate_dot_2_leg3,
-                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    -::overact::math::wide::signed(
-                        g2_a1_leg1 - 1.0,
-                        minus_qd_2_leg1,
-                    ),
-                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                ],
-                [
-                    -(minus_vx_by_a2 * acceleration[0]
-                        + minus_vy_by_a2 * acceleration[1]),
-                    0.0,
-                    -minus_rate_dot_1_leg2,
-                    g1_a2_leg3 * rate_dot_1_leg3,
-                    0.0,
-                    rate_1_leg2,
-                    g1_a2_leg3 * rate_1_leg3,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg2),
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
-                    0.0,
-                    1.0,
-                    g1_a2_leg3,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
-                    -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                    g2_a2_leg3 * rate_dot_2_leg3,
-                    g2_a2_leg1 * minus_a2_x_leg1,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                ],
-            ])
+            output[1][21] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            output[0][21] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            let v2_by_1_y_leg3 = INV_TWICE_L_1
+                * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -3963,37 +4335,81 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+            pose,
+            joints,
+            twist,
+            acceleration,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_joints_into(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("pose", pose), ("joints", joints), ("twist", twist),
                 ("acceleration", acceleration),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
+            output[0][2] = 0.0;
+            output[0][5] = 0.0;
+            output[0][8] = 0.0;
+            output[0][10] = 1.0;
+            output[0][11] = 0.0;
+            output[1][1] = 0.0;
+            output[1][4] = 0.0;
+            output[1][7] = 0.0;
+            output[1][10] = 0.0;
+            output[1][11] = 1.0;
             // --- sines and cosines
-            let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
-            (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
-                joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
+            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-            // --- leg2
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-            let k_leg2 = INV_L_1 / s2_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][4] = rate_1_leg1;
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let v2_by_1_y_leg1 = L_1 * c2_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][1] = -minus_rate_dot_1_leg1;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
@@ -4004,23 +4420,35 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
-                - c12_leg1 * acceleration[1];
-            let g2_vx_leg1 = s1_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let v2_by_1_y_leg1 = L_1 * c2_leg1;
-            let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-            // --- leg2
+            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+                + L_1 * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - g2_vx_leg1 * minus_vx_by_a2;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][5] = rate_1_leg2;
+            output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
+            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+            output[0][19] = ::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                qd_2_leg1,
+            );
+            output[1][16] = g2_a2_leg1 * a_on_f1_leg1;
+            output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]);
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1]);
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -4030,11 +4458,29 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2;
+            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
+                - g2_vy_leg2 * minus_vy_by_a1;
+            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][14] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
+            output[0][17] = g2_a1_leg2 * a_on_f1_leg2;
+            output[0][20] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -4045,6 +4491,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][12] = g1_a1_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][12] = g1_a2_leg3;
+            output[1][6] = g1_a2_leg3 * rate_1_leg3;
+            output[0][6] = g1_a1_leg3 * rate_1_leg3;
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -4054,92 +4509,34 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            let v2_by_1_y_leg3 = L_1 * c2_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - g2_vx_leg1 * minus_vx_by_a1;
-            let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-                + L_1 * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - g2_vx_leg1 * minus_vx_by_a2;
-            let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
-                - g2_vy_leg2 * minus_vy_by_a1;
-            let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-                - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-            let rate_dot_2_leg3 = k_leg3
-                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -(minus_vx_by_a1 * acceleration[0]
-                        + minus_vy_by_a1 * acceleration[1]),
-                    -minus_rate_dot_1_leg1,
-                    0.0,
-                    g1_a1_leg3 * rate_dot_1_leg3,
-                    rate_1_leg1,
-                    0.0,
-                    g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg1),
-                    0.0,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3),
-                    1.0,
-                    0.0,
-                    g1_a1_leg3,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1),
-                    -(g2_a1_leg2 * minus_rate_dot_2_leg2),
-                    g2_a1_leg3 * rate_dot_2_leg3,
-                    a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
-                    g2_a1_leg2 * a_on_f1_leg2,
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    ::overact::math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
-                    ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                ],
-                [
-                    -(minus_vx_by_a2 * acceleration[0]
-                        + minus_vy_by_a2 * acceleration[1]),
-                    0.0,
-                    -minus_rate_dot_1_leg2,
-                    g1_a2_leg3 * rate_dot_1_leg3,
-                    0.0,
-                    rate_1_leg2,
-                    g1_a2_leg3 * rate_1_leg3,
-                    0.0,
-                    ::overact::math::wide::sign(rate_1_leg2),
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3),
-                    0.0,
-                    1.0,
-                    g1_a2_leg3,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1),
-                    -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                    g2_a2_leg3 * rate_dot_2_leg3,
-                    g2_a2_leg1 * a_on_f1_leg1,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                ],
-            ])
+            output[1][21] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            output[0][21] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            let v2_by_1_y_leg3 = L_1 * c2_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            ::core::result::Result::Ok(())
         })
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -4164,6 +4561,25 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+            actuators,
+            actuator_velocities,
+            actuator_accelerations,
+            start,
+            output,
+        ))
+    }
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn idm_red_actuators_base_from_actuators_into(
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+        output: &mut [[::core::primitive::f64; 22]; 2],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         ::overact::guard::finite(
             &[
                 ("actuators", actuators), ("actuator_velocities", actuator_velocities),
@@ -4171,7 +4587,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::roomiest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -4186,6 +4602,16 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            output[0][2] = 0.0;
+            output[0][5] = 0.0;
+            output[0][8] = 0.0;
+            output[0][10] = 1.0;
+            output[0][11] = 0.0;
+            output[1][1] = 0.0;
+            output[1][4] = 0.0;
+            output[1][7] = 0.0;
+            output[1][10] = 0.0;
+            output[1][11] = 1.0;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -4256,6 +4682,18 @@ impl ThreeLegPoint {
             )?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][12] = g1_a1_leg3;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][12] = g1_a2_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -4264,12 +4702,6 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_1 = 1.0 / s_1_1;
-            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-                + INV_TWICE_L_1 * l1_x_leg2;
-            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
@@ -4289,15 +4721,55 @@ impl ThreeLegPoint {
                 * (g1_vy_leg1 * actuator_velocities[0]
                     - minus_g1_vy_leg2 * actuator_velocities[1]
                     - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+            output[0][4] = rate_1_leg1;
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+            output[1][5] = rate_1_leg2;
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+            output[0][6] = g1_a1_leg3 * rate_1_leg3;
+            output[1][6] = g1_a2_leg3 * rate_1_leg3;
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][19] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            output[1][19] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            // --- leg2
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-            let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
-            // --- leg2
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -4307,12 +4779,8 @@ impl ThreeLegPoint {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg1
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -4329,7 +4797,6 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -4347,85 +4814,67 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
-                - g1_vx_leg3 * minus_vx_by_a1;
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            output[0][1] = -minus_rate_dot_1_leg1;
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
                 - minus_bias_a_on_f2_leg3;
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy);
+            output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy);
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            ::core::result::Result::Ok([
-                [
-                    -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy), -minus_rate_dot_1_leg1, 0.0,
-                    g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0, g1_a1_leg3 * rate_1_leg3,
-                    ::overact::math::wide::sign(rate_1_leg1), 0.0,
-                    ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
-                    -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
-                    g2_a1_leg3 * rate_dot_2_leg3,
-                    INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
-                    -(minus_g2_a1_leg2 * a_on_f1_leg2),
-                    -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
-                    -::overact::math::wide::signed(
-                        g2_a1_leg1 - 1.0,
-                        minus_qd_2_leg1,
-                    ),
-                    -::overact::math::wide::signed(minus_g2_a1_leg2, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
-                ],
-                [
-                    -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy), 0.0, -minus_rate_dot_1_leg2,
-                    g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2, g1_a2_leg3 * rate_1_leg3, 0.0,
-                    ::overact::math::wide::sign(rate_1_leg2),
-                    ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
-                    -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
-                    g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
-                    a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
-                    -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
-                    -::overact::math::wide::signed(g2_a2_leg1, minus_qd_2_leg1),
-                    ::overact::math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
-                    ::overact::math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
-                ],
-            ])
+            output[0][21] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
+            output[1][21] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            );
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
+            ::core::result::Result::Ok(())
         })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -6879,7 +7328,6 @@ impl ThreeLegPoint {
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
-        #[derive(::core::clone::Clone, ::core::marker::Copy)]
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 2],
             twist: &'a [::core::primitive::f64; 2],
@@ -8264,34 +8712,38 @@ impl ::overact::Model for ThreeLegPoint {
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform(
+                    .fill(|row, output| Self::idm_red_platform_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators(
+                    .fill(|row, output| Self::idm_red_actuators_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_platform_base(
+                    .fill(|row, output| Self::idm_red_platform_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-                    .each(|row| Self::idm_red_actuators_base(
+                    .fill(|row, output| Self::idm_red_actuators_base_into(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,
+                        output,
                     ))
             }
             ::overact::Function::ProjectPlatform => {

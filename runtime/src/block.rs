@@ -11,6 +11,9 @@ pub trait Flat<T> {
 
     /// The numbers.
     fn flat(&self) -> &[T];
+
+    /// The first numbers of some as an output, if there are enough.
+    fn place(numbers: &mut [T]) -> Option<&mut Self>;
 }
 
 impl<T: Float, const N: usize> Flat<T> for [T; N] {
@@ -19,6 +22,10 @@ impl<T: Float, const N: usize> Flat<T> for [T; N] {
     fn flat(&self) -> &[T] {
         self
     }
+
+    fn place(numbers: &mut [T]) -> Option<&mut Self> {
+        numbers.first_chunk_mut()
+    }
 }
 
 impl<T: Float, const R: usize, const C: usize> Flat<T> for [[T; C]; R] {
@@ -26,6 +33,10 @@ impl<T: Float, const R: usize, const C: usize> Flat<T> for [[T; C]; R] {
 
     fn flat(&self) -> &[T] {
         self.as_flattened()
+    }
+
+    fn place(numbers: &mut [T]) -> Option<&mut Self> {
+        numbers.as_chunks_mut::<C>().0.first_chunk_mut()
     }
 }
 
@@ -142,6 +153,27 @@ impl<'a> Block<'a> {
             let value = function(Inputs { inputs, sample });
             let value = value.map_err(|error| SampleError { sample, error })?;
             write(&value, out);
+        }
+        Ok(())
+    }
+
+    /// Has a generated function write sample by sample.
+    ///
+    /// # Errors
+    /// The first sample at which the function fails.
+    pub fn fill<O: Flat<f64>>(
+        self,
+        function: impl Fn(Inputs<'a>, &mut O) -> Result<(), Error>,
+    ) -> Result<(), SampleError> {
+        let inputs = self.inputs;
+        for (sample, out) in self.output.chunks_mut(O::LEN.max(1)).enumerate() {
+            let length = Error::Length {
+                expected: O::LEN,
+                found: out.len(),
+            };
+            let place = O::place(out).ok_or(length);
+            let filled = place.and_then(|place| function(Inputs { inputs, sample }, place));
+            filled.map_err(|error| SampleError { sample, error })?;
         }
         Ok(())
     }

@@ -17,6 +17,7 @@ compile_error!(
 
 pub mod aside;
 pub mod block;
+mod filled;
 pub mod float;
 pub mod forward;
 pub mod guard;
@@ -27,6 +28,7 @@ pub mod model;
 pub mod partition;
 mod widest;
 
+pub use filled::filled;
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
     ActuatorGroup, Actuators, Code, Columns, Condition, Error, Explanation, Extent, Function,
@@ -34,4 +36,4 @@ pub use overact_core::{
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;
-pub use widest::widest;
+pub use widest::{roomiest, widest};

@@ -14,3 +14,14 @@ pub fn widest<R>(function: impl FnOnce() -> R) -> R {
     }
     function()
 }
+
+/// The same with AVX-512 where there is some, whose registers are twice as many: for functions that write hundreds of
+/// numbers, of which those of AVX2 hold too few.
+#[inline(always)]
+pub fn roomiest<R>(function: impl FnOnce() -> R) -> R {
+    #[cfg(dispatch)]
+    if let Some(simd) = pulp::x86::V4::try_new() {
+        return simd.vectorize(function);
+    }
+    widest(function)
+}

@@ -4,7 +4,7 @@ use overact::{Columns, Function};
 use overact_codegen::derivation::{MotionInput};
 use overact_codegen::evaluation::{Evaluator, Number, Rows};
 use overact_codegen::{Source, compile};
-use overact_timed::@MODULE@;
+use overact_timed::{Output, @MODULE@};
 use std::{env, error::Error, fs, hint::black_box, time::Instant};
 
 /// One state: the function's inputs.
@@ -40,12 +40,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let inputs: Vec<Rows<'_>> = inputs.iter().map(|values| Rows { values, shared: false }).collect();
     let mut output = vec![0.0; SAMPLES * program.entries.len()];
     let mut evaluator = Evaluator::new(program);
+    let mut written = @WRITTEN@;
     // Blocks first: all agree with the function.
     evaluator
         .evaluate(SAMPLES, &inputs, &mut output)
         .map_err(|failed| format!("{failed:?}"))?;
     for (s, row) in states.iter().zip(output.chunks(program.entries.len())) {
-        let expected = overact_timed::Output::numbers(&@CALL@(@ARGUMENTS@))?;
+        let mut expected = @CALL@(@ARGUMENTS@).numbers()?;
+        expected.extend(written.numbers()?);
         let scale = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if expected.iter().zip(row).any(|(a, b)| (a - b).abs() > 1e-9 * scale) {
             return Err("blocks differ from the function".into());
@@ -58,6 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             match what {
                 0 => states.iter().for_each(|s| {
                     black_box(&@CALL@(@ARGUMENTS@));
+                    black_box(&mut written);
                 }),
                 1 => {
                     let take = |number: Number<'_>| {

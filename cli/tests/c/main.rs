@@ -12,7 +12,7 @@ use overact::{Columns, Function};
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::{Choice, Effort, Float, Request, RobotModel, Source, c, compile_with};
 use overact_robot::InterpretedRobot;
-use overact_tier::{by_tier, is_full};
+use overact_tier::{by_tier, of_many};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -303,14 +303,12 @@ fn stems() -> Result<Vec<String>, Failure> {
 
 /// The robots of the tier, with those of their functions that are compared; none means all.
 fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
-    let robots: Vec<(String, &[&str])> = match is_full() {
-        true => stems()?.into_iter().map(|stem| (stem, &[][..])).collect(),
-        false => FEW
-            .map(|(stem, functions)| (stem.to_owned(), functions))
-            .to_vec(),
-    };
-    assert!(robots.len() >= FEW.len());
-    Ok(robots)
+    let all: &[&str] = &[];
+    let few = FEW.map(|(stem, functions)| (stem.to_owned(), by_tier([functions, all])));
+    let others = of_many(stems()?).into_iter();
+    let others = others.filter(|stem| FEW.iter().all(|(few, _)| few != stem));
+    let others = others.map(|stem| (stem, all));
+    Ok(few.into_iter().chain(others).collect())
 }
 
 #[test]

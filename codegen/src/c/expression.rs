@@ -39,24 +39,38 @@ impl Writer<'_> {
             while let Some((_, heading)) = sections.next_if(|(name, _)| assigns(statement, name)) {
                 out += &format!("    /* --- {heading} */\n");
             }
-            out += &self.statement(statement, body);
+            out += &self.statement(statement, body, output);
         }
         if output.is_empty() {
             out += "    (void)output;\n";
         }
         for (at, value) in body.output.iter().enumerate() {
-            out += &code(INDENT, &format!("output[{at}] = {};", self.text(value)));
+            out += &self.output(at, value);
         }
         out
     }
 
-    fn statement(&mut self, statement: &Statement, body: &Body) -> String {
+    fn statement(&mut self, statement: &Statement, body: &Body, output: &Array) -> String {
         match statement {
             Statement::Assign { name, value } => self.assign(name, value),
             Statement::Pairs(pairs) => pairs.iter().map(|pair| self.pair(pair, body)).collect(),
             Statement::Pair(pair) => self.pair(pair, body),
             Statement::Guard { value, condition } => self.guard(value, condition),
+            Statement::Place {
+                row,
+                columns,
+                value,
+            } => {
+                let width = output.shape.get(1).copied().unwrap_or_default();
+                let places = columns.clone().map(|column| row * width + column);
+                places.map(|at| self.output(at, value)).collect()
+            }
         }
+    }
+
+    /// A number of the output.
+    fn output(&self, at: usize, value: &Expression) -> String {
+        code(INDENT, &format!("output[{at}] = {};", self.text(value)))
     }
 
     fn assign(&self, name: &str, value: &Expression) -> String {
@@ -183,6 +197,6 @@ fn assigns(statement: &Statement, name: &str) -> bool {
         Statement::Assign { name: own, .. } => own == name,
         Statement::Pairs(pairs) => pairs.iter().any(in_pair),
         Statement::Pair(pair) => in_pair(pair),
-        Statement::Guard { .. } => false,
+        Statement::Guard { .. } | Statement::Place { .. } => false,
     }
 }

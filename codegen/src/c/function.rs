@@ -146,7 +146,12 @@ fn rest(
         return (call, Vec::new());
     }
     let reserved = |name: &str| naming.is_reserved(name);
-    let body = Body::write(program, &Labels::new(model, function), &reserved);
+    let labels = Labels::new(model, function);
+    // An error leaves the output as it was: what may still fail writes it last.
+    let body = match outline.is_placed() && program.guards.is_empty() {
+        true => Body::placed(program, &labels, &reserved),
+        false => Body::write(program, &labels, &reserved),
+    };
     let mut writer = Writer {
         model,
         naming,

@@ -7,23 +7,27 @@ use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, State
 use overact_core::ActuatorGroup;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
+use std::ops::Range;
 
 /// A function's body.
 pub struct Written {
     /// The assignments.
     pub statements: TokenStream,
-    /// The output.
+    /// The output; nothing where statements have written it.
     pub value: TokenStream,
 }
 
-/// Statements and value of a body whose inputs and output are these.
+/// Statements and value of a body whose output is this, or is written by its statements.
 #[must_use]
-pub(super) fn write(writer: &Writer<'_>, body: &Body, output: &Array) -> Written {
+pub(super) fn write(writer: &Writer<'_>, body: &Body, output: Option<&Array>) -> Written {
     let constants = constants(body, writer.float);
     let statements = body.statements.iter().map(|s| writer.statement(s));
     Written {
         statements: quote!(#constants #(#statements)*),
-        value: writer.output(&body.output, output),
+        value: match output {
+            Some(output) => writer.output(&body.output, output),
+            None => quote!(()),
+        },
     }
 }
 
@@ -123,6 +127,21 @@ impl<'a> Writer<'a> {
                 quote!(let #names = #math::sin_cos(#angle);)
             }
             Statement::Guard { value, condition } => self.guard(value, condition),
+            Statement::Place {
+                row,
+                columns,
+                value,
+            } => self.place(*row, columns, value),
+        }
+    }
+
+    /// Numbers of the output.
+    fn place(&self, row: usize, columns: &Range<usize>, value: &Expression) -> TokenStream {
+        let value = self.tokens(value);
+        let [row, first, end] = [row, columns.start, columns.end].map(Literal::usize_unsuffixed);
+        match columns.len() {
+            1 => quote!(output[#row][#first] = #value;),
+            _ => quote!(output[#row][#first..#end].fill(#value);),
         }
     }
 

@@ -1,7 +1,10 @@
 //! One generated function: documentation, signature, body.
+//!
+//! A model with a column for each parameter is written into a matrix that the caller hands in, by the function whose
+//! name ends with `_into`; the one without only hands in a matrix of its own.
 
 use super::boundary::boundary;
-use super::expression::{self, Writer, array_type};
+use super::expression::{self, Writer, array_type, ident};
 use super::lanes::{self, Work};
 use super::layout::Sections;
 use crate::lowering::Pays;
@@ -12,7 +15,7 @@ use crate::writing::operations;
 use crate::writing::outline::{Outline, Table};
 use overact_core::Function;
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::quote;
 
 /// A function as an item of an `impl` block.
 pub struct Item {
@@ -37,7 +40,13 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     }
     if let Some(twin) = outline.twin {
         return Item {
-            tokens: around(model, function, &outline, &TokenStream::new(), &call(twin)),
+            tokens: around(
+                model,
+                function,
+                &outline,
+                &TokenStream::new(),
+                &call(twin, &outline),
+            ),
             sections: Sections::none(&function.name),
             names: Vec::new(),
         };
@@ -45,7 +54,8 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     let Some(lanes) = &function.lanes else {
         return straight(model, function, &outline, TokenStream::new());
     };
-    let written = lanes::write(model, function, lanes);
+    let name = body_name(function, &outline);
+    let written = lanes::write(model, function, lanes, &name);
     let Work { item, value } = Work::new(function, lanes, &written);
     if lanes.pays == Pays::Always {
         return Item {
@@ -74,27 +84,41 @@ fn straight(
     before: TokenStream,
 ) -> Item {
     let program = &function.program;
+    let labels = Labels::new(model, function);
     // A word of Rust is no name that the derivation gives.
-    let body = Body::write(program, &Labels::new(model, function), &|_| false);
+    let (body, output) = match outline.is_placed() {
+        true => (
+            Body::placed(program, &labels, &|name| name == "output"),
+            None,
+        ),
+        false => {
+            let body = Body::write(program, &labels, &|_| false);
+            (body, Some(&program.output))
+        }
+    };
     let is_wide = is_wide(model, function);
     let writer = match is_wide {
         true => Writer::wide(&program.inputs, model.float),
         false => Writer::new(&program.inputs, model.float),
     };
-    let written = expression::write(&writer, &body, &program.output);
+    let written = expression::write(&writer, &body, output);
     let (statements, value) = (written.statements, written.value);
     let value = quote!(::core::result::Result::Ok(#value));
+    let run = match outline.is_placed() {
+        true => quote!(::overact::roomiest),
+        false => quote!(::overact::widest),
+    };
     let (statements, value) = match is_wide {
         true => (
             before,
-            quote!(::overact::widest(#[inline(always)] || { #statements #value })),
+            quote!(#run(#[inline(always)] || { #statements #value })),
         ),
         false => (quote!(#before #statements), value),
     };
     Item {
         tokens: around(model, function, outline, &statements, &value),
         sections: Sections {
-            function: function.name.clone(),
+            function: body_name(function, outline),
             starts: body.sections,
         },
         names: body.names,
@@ -130,7 +154,7 @@ fn around(
     statements: &TokenStream,
     value: &TokenStream,
 ) -> TokenStream {
-    let name = format_ident!("{}", function.name);
+    let name = ident(&function.name);
     let output = array_type(&function.program.output, model.float);
     let documentation = documentation(model, function, outline);
     let check = boundary(model, &outline.arguments);
@@ -142,31 +166,58 @@ fn around(
     let find_joints = outline
         .finds_joints
         .then(|| quote!(let joints = &Self::joints(pose)?;));
-    let parameters = outline.arguments.iter().map(|argument| {
-        let (name, kind) = (
-            format_ident!("{}", argument.name),
-            array_type(argument, model.float),
-        );
-        quote!(#name: &#kind)
-    });
+    let arguments = outline.arguments.iter();
+    let (names, kinds): (Vec<_>, Vec<_>) = arguments
+        .map(|argument| (ident(&argument.name), array_type(argument, model.float)))
+        .unzip();
+    let body = quote!(#check #find_pose #find_joints #statements #value);
+    if !outline.is_placed() {
+        return quote! {
+            #(#[doc = #documentation])*
+            pub fn #name(#(#names: &#kinds),*) -> ::core::result::Result<#output, ::overact::Error> {
+                #body
+            }
+        };
+    }
+    let into = ident(&body_name(function, outline));
+    let written =
+        format!(" [`Self::{name}`], written into `output`, which holds no result after an error.");
     quote! {
         #(#[doc = #documentation])*
-        pub fn #name(#(#parameters),*) -> ::core::result::Result<#output, ::overact::Error> {
-            #check
-            #find_pose
-            #find_joints
-            #statements
-            #value
+        pub fn #name(#(#names: &#kinds),*) -> ::core::result::Result<#output, ::overact::Error> {
+            ::overact::filled(|output| Self::#into(#(#names,)* output))
+        }
+
+        #[doc = #written]
+        #[doc = ""]
+        #[doc = " # Errors"]
+        #[doc = " The same."]
+        pub fn #into(#(#names: &#kinds,)* output: &mut #output) -> ::core::result::Result<(), ::overact::Error> {
+            #body
         }
     }
 }
 
-/// The call of a function with arguments of the names of its inputs.
-fn call(function: &CompiledFunction) -> TokenStream {
-    let name = format_ident!("{}", function.name);
+/// The name of the function in which the statements stand.
+fn body_name(function: &CompiledFunction, outline: &Outline<'_>) -> String {
+    match outline.is_placed() {
+        true => into(&function.name),
+        false => function.name.clone(),
+    }
+}
+
+/// The name of a function that writes into a matrix which is handed in.
+pub(super) fn into(name: &str) -> String {
+    format!("{name}_into")
+}
+
+/// The call of a function with arguments of the names of its inputs, and of the output if it is handed in.
+fn call(function: &CompiledFunction, outline: &Outline<'_>) -> TokenStream {
+    let name = ident(&body_name(function, outline));
     let inputs = function.program.inputs.iter();
-    let inputs = inputs.map(|array| format_ident!("{}", array.name));
-    quote!(Self::#name(#(#inputs),*))
+    let inputs = inputs.map(|array| ident(&array.name));
+    let output = outline.is_placed().then(|| quote!(output));
+    quote!(Self::#name(#(#inputs,)* #output))
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.

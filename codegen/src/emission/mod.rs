@@ -77,6 +77,7 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     documentation.extend(source(&model.mechanism.source));
     documentation.push(String::new());
     documentation.extend(operations::of_robot(model));
+    documentation.extend(written_into(model));
     let legend = legend::lines(&Labels::of_robot(model), &names.collect());
     if !legend.is_empty() {
         documentation.push(String::new());
@@ -166,6 +167,18 @@ fn sizes(model: &RobotModel) -> String {
 fn is_short(model: &RobotModel) -> Option<&'static str> {
     let is_short = model.float == Float::F32;
     is_short.then_some(" All numbers are `f32`, of seven digits.")
+}
+
+/// What is said of the functions that come twice, if there are any.
+fn written_into(model: &RobotModel) -> Vec<String> {
+    let mut functions = model.functions.iter();
+    match functions.any(|function| function.computes.columns().is_some()) {
+        true => vec![
+            String::new(),
+            " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.".to_owned(),
+        ],
+        false => Vec::new(),
+    }
 }
 
 /// A summary as a line of documentation.

@@ -1,6 +1,6 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
-use super::expression;
+use super::{expression, function};
 use crate::derivation::MotionInput;
 use crate::model::RobotModel;
 use overact_core::Function;
@@ -96,13 +96,22 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
 /// The arm of a function that the robot has.
 fn arm(model: &RobotModel, function: Function) -> Option<TokenStream> {
     let compiled = model.served(function)?;
-    let name = format_ident!("{}", compiled.name);
     let rows = (0..function.inputs().len()).map(Literal::usize_unsuffixed);
-    let call = quote!(Self::#name(#(row.row(#rows)?),*));
+    let rows = quote!(#(row.row(#rows)?,)*);
     let pattern = pattern(function);
+    let of_samples = match function.columns() {
+        Some(_) => {
+            let name = expression::ident(&function::into(&compiled.name));
+            quote!(fill(|row, output| Self::#name(#rows output)))
+        }
+        None => {
+            let name = expression::ident(&compiled.name);
+            quote!(each(|row| Self::#name(#rows)))
+        }
+    };
     Some(quote! {
         #pattern => ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
-            .each(|row| #call),
+            .#of_samples,
     })
 }
 

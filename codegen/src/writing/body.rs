@@ -7,8 +7,9 @@
 use super::angles;
 use super::labels::Labels;
 use super::names::Names;
+use super::places::{Place, Places};
 use super::statement::{Call, Expression, Operator, Pair, Statement};
-use crate::lowering::{Operand, Operation, Program};
+use crate::lowering::{Entry, Operand, Operation, Program, few_waiting};
 use std::collections::{BTreeMap, HashSet};
 
 /// Operations that one expression may hold.
@@ -32,7 +33,7 @@ pub struct Body {
     pub constants: Vec<Constant>,
     /// The assignments and conditions.
     pub statements: Vec<Statement>,
-    /// The output, row-major.
+    /// The output, row-major; empty where statements write it.
     pub output: Vec<Expression>,
     /// Where a section begins: the first name of its first assignment, and the section's.
     pub sections: Vec<(String, String)>,
@@ -48,6 +49,18 @@ impl Body {
         Self::write_with(program, labels, reserved, &|_| false)
     }
 
+    /// The same with a statement for each number of the output, where it is known, in an order in which few values
+    /// wait for their last use.
+    #[must_use]
+    pub fn placed(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
+        let program = few_waiting(program);
+        let mut writer = Writer::new(&program, labels, reserved, &|_| false);
+        writer.places = Some(Places::new(&program));
+        writer.known_places();
+        writer.steps();
+        writer.body(Vec::new())
+    }
+
     /// The same with a name for each step that is `kept`, however short.
     #[must_use]
     pub fn write_with(
@@ -56,36 +69,10 @@ impl Body {
         reserved: &dyn Fn(&str) -> bool,
         kept: &dyn Fn(usize) -> bool,
     ) -> Self {
-        let count = program.steps.len();
-        let mut writer = Writer {
-            program,
-            naming: Names::new(program, labels),
-            labels,
-            reserved,
-            kept,
-            constants: BTreeMap::new(),
-            sections: Vec::new(),
-            names: vec![None; count],
-            uses: program.uses(),
-            inlined: vec![None; count],
-            statements: Vec::new(),
-            taken: program.inputs.iter().map(|a| a.name.clone()).collect(),
-            written: vec![false; count],
-            guarded: 0,
-        };
-        writer.angles(&angles::early(program));
-        let mut at = 0;
-        while at < count {
-            at += writer.step(at);
-        }
+        let mut writer = Writer::new(program, labels, reserved, kept);
+        writer.steps();
         let output = writer.output();
-        Self {
-            constants: writer.constants.into_values().collect(),
-            statements: writer.statements,
-            output,
-            sections: sections(&writer.sections),
-            names: writer.names.into_iter().flatten().collect(),
-        }
+        writer.body(output)
     }
 }
 
@@ -114,9 +101,93 @@ struct Writer<'p> {
     written: Vec<bool>,
     /// How many guards are written.
     guarded: usize,
+    /// Where the steps' values stand in the output, if statements write it.
+    places: Option<Places>,
 }
 
-impl Writer<'_> {
+impl<'p> Writer<'p> {
+    /// Of a program of which nothing is written.
+    fn new(
+        program: &'p Program,
+        labels: &'p Labels,
+        reserved: &'p dyn Fn(&str) -> bool,
+        kept: &'p dyn Fn(usize) -> bool,
+    ) -> Self {
+        let count = program.steps.len();
+        Self {
+            program,
+            naming: Names::new(program, labels),
+            labels,
+            reserved,
+            kept,
+            constants: BTreeMap::new(),
+            sections: Vec::new(),
+            names: vec![None; count],
+            uses: program.uses(),
+            inlined: vec![None; count],
+            statements: Vec::new(),
+            taken: program.inputs.iter().map(|a| a.name.clone()).collect(),
+            written: vec![false; count],
+            guarded: 0,
+            places: None,
+        }
+    }
+
+    /// Writes all steps.
+    fn steps(&mut self) {
+        self.angles(&angles::early(self.program));
+        let mut at = 0;
+        while at < self.program.steps.len() {
+            let count = self.step(at);
+            (at..at + count).for_each(|at| self.place(at));
+            at += count;
+        }
+    }
+
+    /// What is written.
+    fn body(self, output: Vec<Expression>) -> Body {
+        Body {
+            constants: self.constants.into_values().collect(),
+            statements: self.statements,
+            output,
+            sections: sections(&self.sections),
+            names: self.names.into_iter().flatten().collect(),
+        }
+    }
+
+    /// Writes the numbers of the output that no step computes.
+    fn known_places(&mut self) {
+        let known = self.places.as_mut().map(Places::known);
+        for (place, entry) in known.unwrap_or_default() {
+            self.put(place, entry);
+        }
+    }
+
+    /// Writes the numbers of the output that a step computes.
+    fn place(&mut self, step: usize) {
+        let places = self.places.as_mut().map(|places| places.of(step));
+        for (place, entry) in places.unwrap_or_default() {
+            self.put(place, entry);
+        }
+    }
+
+    fn put(&mut self, Place { row, columns }: Place, entry: Entry) {
+        let value = self.entry(entry);
+        self.statements.push(Statement::Place {
+            row,
+            columns,
+            value,
+        });
+    }
+
+    fn entry(&mut self, entry: Entry) -> Expression {
+        let value = self.operand(entry.operand).expression;
+        match entry.negative {
+            true => Expression::Negative(Box::new(value)),
+            false => value,
+        }
+    }
+
     /// Writes the sines and cosines of angles that are known from the start.
     fn angles(&mut self, early: &angles::Early) {
         if early.pairs.is_empty() {
@@ -323,14 +394,7 @@ impl Writer<'_> {
 
     fn output(&mut self) -> Vec<Expression> {
         let entries = self.program.entries.iter();
-        let value = |entry: &crate::lowering::Entry| {
-            let value = self.operand(entry.operand).expression;
-            match entry.negative {
-                true => Expression::Negative(Box::new(value)),
-                false => value,
-            }
-        };
-        entries.map(value).collect()
+        entries.map(|&entry| self.entry(entry)).collect()
     }
 }
 

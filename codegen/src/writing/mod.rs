@@ -15,6 +15,7 @@ pub mod legend;
 mod names;
 pub mod operations;
 pub mod outline;
+mod places;
 pub mod statement;
 #[cfg(test)]
 mod tests;

@@ -64,6 +64,15 @@ impl<'m> Outline<'m> {
     }
 }
 
+impl Outline<'_> {
+    /// Whether the output is written into a place that the caller hands in, number by number: that of models with a
+    /// column for each parameter, which is too large to be handed back without a copy.
+    #[must_use]
+    pub fn is_placed(&self) -> bool {
+        self.columns.is_some()
+    }
+}
+
 fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Array> {
     let array = |name: &str, length: usize| Array {
         name: name.to_owned(),

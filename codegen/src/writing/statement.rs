@@ -1,6 +1,7 @@
 //! Statements and expressions as all languages have them.
 
 use crate::lowering::Condition;
+use std::ops::Range;
 
 /// How tightly an expression binds: sums, products, atoms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -130,5 +131,14 @@ pub enum Statement {
         value: Expression,
         /// The condition.
         condition: Condition,
+    },
+    /// Numbers of the output that have the same value.
+    Place {
+        /// Their row.
+        row: usize,
+        /// Their columns.
+        columns: Range<usize>,
+        /// The value.
+        value: Expression,
     },
 }

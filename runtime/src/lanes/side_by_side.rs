@@ -3,7 +3,7 @@
 use super::Vector;
 
 /// A function whose legs are computed side by side, in vectors that are chosen when it runs.
-pub trait SideBySide: Copy {
+pub trait SideBySide: Sized {
     /// What it gives.
     type Output;
 

@@ -5,7 +5,7 @@ use super::expected::Expected;
 use super::{Failure, description, model_with, repository};
 use overact_codegen::mechanism::{JointKind, TwistCoordinate};
 use overact_codegen::{Effort, Request, RobotModel};
-use overact_tier::{by_tier, is_full};
+use overact_tier::{by_tier, is_night};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock};
 
@@ -68,8 +68,8 @@ macro_rules! library {
     };
 }
 
-/// Robots of the full tier, each with one of the default tier that has the same motion: they take a third of the
-/// time of all. Redundant robots of other motions are there in either tier.
+/// Robots of the night, each with one of the other tiers that has the same motion: they take a third of the time of
+/// all. Redundant robots of other motions are there in either tier.
 const LARGER_BROTHERS: [(&str, &str); 4] = [
     ("octopod", "hexapod"),
     ("delta_4", "delta"),
@@ -80,7 +80,7 @@ const LARGER_BROTHERS: [(&str, &str); 4] = [
 /// Whether the tier that runs looks at a robot.
 #[must_use]
 pub fn is_of_the_tier(stem: &str) -> bool {
-    is_full() || LARGER_BROTHERS.iter().all(|(larger, _)| *larger != stem)
+    is_night() || LARGER_BROTHERS.iter().all(|(larger, _)| *larger != stem)
 }
 
 /// Names of all descriptions of `robots/`, in order.

@@ -22,7 +22,8 @@ impl Served<'_> {
         let inputs = function.inputs().iter();
         let inputs = inputs.map(|input| sample.argument(function, input.name()));
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
-        let mut output = vec![0.0; rows * columns];
+        // What a function leaves out is no number.
+        let mut output = vec![f64::NAN; rows * columns];
         self.0.evaluate(function, &inputs, &mut output)?;
         Ok(DMatrix::from_row_slice(rows, columns, &output))
     }

@@ -5,6 +5,7 @@
 mod agreement;
 mod blocks;
 mod description;
+mod into;
 mod motion;
 mod ranks;
 mod stages;

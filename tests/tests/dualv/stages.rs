@@ -268,8 +268,13 @@ fn emission_of_two_functions() -> Result<(), Failure> {
         let length = file[at..].find("\n    }\n").ok_or("no end")?;
         Ok(file[start..at + length + 7].to_owned())
     };
-    let both = [text("project_platform")?, text("idm_red_payload")?];
-    insta::assert_snapshot!(both.join("\n"));
+    let names = [
+        "project_platform",
+        "idm_red_payload",
+        "idm_red_payload_into",
+    ];
+    let texts = names.map(text).into_iter().collect::<Result<Vec<_>, _>>()?;
+    insta::assert_snapshot!(texts.join("\n"));
     Ok(())
 }
 

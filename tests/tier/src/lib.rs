@@ -57,6 +57,17 @@ pub fn by_tier<T>([default, full]: [T; 2]) -> T {
     if is_full() { full } else { default }
 }
 
+/// Those of many robots of which the tier takes its part: all at night, every second one in the full tier, none in the
+/// default one, whose tests have a few of their own.
+#[must_use]
+pub fn of_many<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    match tier() {
+        Tier::Default => Vec::new(),
+        Tier::Full => all.into_iter().step_by(2).collect(),
+        Tier::Night => all.into_iter().collect(),
+    }
+}
+
 /// How many robots, or draws of noise, are taken at random: as many as is asked for, or as the tier has.
 ///
 /// # Panics

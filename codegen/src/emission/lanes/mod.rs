@@ -22,7 +22,7 @@ pub(super) use work::Work;
 pub(super) struct Loop {
     /// The statements.
     pub(super) statements: TokenStream,
-    /// The output.
+    /// What is given back: nothing where columns went to their places.
     pub(super) value: TokenStream,
     /// Where sections begin.
     pub(super) sections: Sections,
@@ -38,8 +38,13 @@ const RESERVED: [&str; 9] = [
     "at", "added", "failed", "lanes", "own", "rows", "sums", "solution", "output",
 ];
 
-/// The body of a function in lanes.
-pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lanes) -> Loop {
+/// The body of a function in lanes, which stands in a function of this name.
+pub(super) fn write(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    lanes: &Lanes,
+    name: &str,
+) -> Loop {
     let kept = between(lanes);
     let labels = Labels::new(model, function).in_lanes(lanes);
     let is_reserved = |name: &str| RESERVED.contains(&name);
@@ -50,14 +55,18 @@ pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lan
     }
     let constants = expression::constants(&body, Float::F64);
     let (tables, arrays) = (tables(lanes), arrays(lanes));
+    let (parts, value) = match &lanes.gathered {
+        Gathered::Columns(columns) => (split.columns(columns, &body.output), quote!(())),
+        Gathered::Sums(sums) => {
+            let parts = sums::parts(model, &split, sums, &body.output);
+            (parts, quote!(output))
+        }
+    };
     let Parts {
         before,
         of_legs,
         after,
-    } = match &lanes.gathered {
-        Gathered::Columns(columns) => split.columns(columns, &body.output),
-        Gathered::Sums(sums) => sums::parts(model, &split, sums, &body.output),
-    };
+    } = parts;
     let places = places(lanes);
     let [none_failed, failed] = match split.has_guards {
         true => [
@@ -87,9 +96,9 @@ pub(super) fn write(model: &RobotModel, function: &CompiledFunction, lanes: &Lan
         .partition(|(name, _)| split.own_names.contains(name));
     Loop {
         statements,
-        value: quote!(output),
+        value,
         sections: Sections {
-            function: function.name.clone(),
+            function: name.to_owned(),
             starts: headings(lanes, shared, own),
         },
         names: body.names,

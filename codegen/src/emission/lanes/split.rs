@@ -61,6 +61,8 @@ impl<'a> Split<'a> {
                     self.push(false, statement);
                 }
             }
+            // Columns go to their places behind all other statements.
+            Statement::Place { .. } => {}
         }
     }
 
@@ -151,7 +153,7 @@ impl<'a> Split<'a> {
         let (rows, columns) = (unsuffixed(shape[0]), unsuffixed(shape[1]));
         Parts {
             before: quote! {
-                let mut output = [[0.0; #columns]; #rows];
+                *output = [[0.0; #columns]; #rows];
                 #(#of_all)*
             },
             of_legs: quote!(#(#of_legs)*),

@@ -126,7 +126,11 @@ fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream 
         LegRows::Times(_) => &program.output,
         _ => &split.lanes.output,
     };
-    let written = expression::write(&Writer::new(&program.inputs, Float::F64), &body, output);
+    let written = expression::write(
+        &Writer::new(&program.inputs, Float::F64),
+        &body,
+        Some(output),
+    );
     let (statements, value) = (written.statements, written.value);
     match statements.is_empty() {
         true => value,

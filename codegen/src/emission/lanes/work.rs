@@ -4,7 +4,7 @@
 use super::{FEW, Loop};
 use crate::emission::expression::{array_type, ident};
 use crate::float::Float;
-use crate::lowering::{Elements, Lanes};
+use crate::lowering::{Elements, Gathered, Lanes};
 use crate::model::CompiledFunction;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -29,17 +29,27 @@ impl Work {
             .inputs
             .iter()
             .filter(|array| is_used(lanes, &array.name));
-        let (names, kinds): (Vec<_>, Vec<_>) = arrays
+        let (names, kinds): (Vec<_>, Vec<TokenStream>) = arrays
             .map(|array| (ident(&array.name), array_type(array, Float::F64)))
             .unzip();
         let output = array_type(&program.output, Float::F64);
         let (statements, value) = (&written.statements, &written.value);
+        let mut names: Vec<TokenStream> = names.into_iter().map(|name| quote!(#name)).collect();
+        let mut kinds: Vec<TokenStream> = kinds.into_iter().map(|kind| quote!(&'a #kind)).collect();
+        // Columns go to their places, sums are given back.
+        let given = match &lanes.gathered {
+            Gathered::Columns(_) => {
+                names.push(quote!(output));
+                kinds.push(quote!(&'a mut #output));
+                quote!(())
+            }
+            Gathered::Sums(_) => output,
+        };
         let item = quote! {
             #[doc = " The function with its legs side by side, in vectors that are chosen when it runs."]
-            #[derive(::core::clone::Clone, ::core::marker::Copy)]
-            struct Legs<'a> { #(#names: &'a #kinds),* }
+            struct Legs<'a> { #(#names: #kinds),* }
             impl ::overact::lanes::SideBySide for Legs<'_> {
-                type Output = ::core::result::Result<#output, ::overact::Error>;
+                type Output = ::core::result::Result<#given, ::overact::Error>;
                 #[inline(always)]
                 fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
                     let Self { #(#names),* } = self;

@@ -9,5 +9,6 @@ mod dominators;
 mod lanes;
 mod language;
 mod listing;
+mod order;
 mod properties;
 mod random;

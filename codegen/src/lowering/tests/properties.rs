@@ -9,6 +9,7 @@ use crate::cas::field::canonical;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::digits::evaluate;
 use crate::lowering::dag::{Angle, Dag, Definition, Edge};
+use crate::lowering::few_waiting;
 use crate::lowering::passes::{PARTS, PASSES};
 use crate::lowering::program::{Operand, Operation, Program};
 use crate::lowering::schedule::schedule;
@@ -201,5 +202,12 @@ fn programs_compute_what_the_expressions_say() {
         };
         let found = results(&program, &input);
         assert_close(&found, &expected, &format!("function {seed}"));
+        let ordered = few_waiting(&program);
+        ordered
+            .verify()
+            .unwrap_or_else(|broken| panic!("function {seed}, in order: {broken}"));
+        let again = results(&ordered, &input);
+        let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&again), bits(&found), "function {seed}, in order");
     }
 }

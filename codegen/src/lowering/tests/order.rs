@@ -1,0 +1,87 @@
+//! The order in which few values wait for their last use.
+
+use crate::lowering::few_waiting;
+use crate::lowering::program::{Array, Entry, Operand, Operation, Program, Step};
+
+/// Element of the one input.
+fn input(index: usize) -> Operand {
+    Operand::Input { array: 0, index }
+}
+
+/// A program of an input, a matrix and these steps.
+fn program(shape: [usize; 2], steps: &[Operation], entries: &[usize]) -> Program {
+    let array = |name: &str, shape: &[usize]| Array {
+        name: name.to_owned(),
+        shape: shape.to_vec(),
+    };
+    let steps = steps.iter().map(|&operation| Step {
+        operation,
+        name: None,
+        scope: String::new(),
+    });
+    let entries = entries.iter().map(|&at| Entry::positive(Operand::Step(at)));
+    Program {
+        inputs: vec![array("x", &[4])],
+        output: array("output", &shape),
+        entries: entries.collect(),
+        steps: steps.collect(),
+        guards: Vec::new(),
+        pieces: 0,
+    }
+}
+
+/// How many values wait for a later step, at most, where results are written at once.
+fn waiting(program: &Program) -> usize {
+    let last = |at: usize| {
+        let uses = program.steps.iter().enumerate().skip(at + 1);
+        let mut uses =
+            uses.filter(|(_, step)| step.operation.operands().contains(&Operand::Step(at)));
+        uses.next_back().map(|(user, _)| user)
+    };
+    let last: Vec<Option<usize>> = (0..program.steps.len()).map(last).collect();
+    let behind = |now: usize| {
+        let last = last[..=now].iter();
+        last.filter(|last| last.is_some_and(|last| last > now))
+            .count()
+    };
+    (0..last.len()).map(behind).max().unwrap_or(0)
+}
+
+#[test]
+fn what_shares_a_value_stands_side_by_side() {
+    let step = Operand::Step;
+    // Two values, and of each two results, which the columns have the other way round.
+    let steps = [
+        Operation::Mul(input(0), input(1)),
+        Operation::Mul(step(0), input(2)),
+        Operation::Mul(input(2), input(3)),
+        Operation::Mul(step(2), input(1)),
+        Operation::Mul(step(0), input(3)),
+        Operation::Mul(step(2), input(0)),
+    ];
+    let before = program([1, 4], &steps, &[1, 3, 4, 5]);
+    let after = few_waiting(&before);
+    assert_eq!([waiting(&before), waiting(&after)], [2, 1]);
+    assert_eq!(after.verify(), Ok(()));
+    let order = [steps[0], steps[1], Operation::Mul(step(0), input(3))];
+    let found: Vec<Operation> = after.steps[..3].iter().map(|s| s.operation).collect();
+    assert_eq!(found, order);
+}
+
+#[test]
+fn sine_and_cosine_stay_together() {
+    let step = Operand::Step;
+    let steps = [
+        Operation::Add(input(0), input(1)),
+        Operation::Cosine(step(0)),
+        Operation::Sine(step(0)),
+        Operation::Mul(step(1), input(2)),
+        Operation::Mul(step(3), step(3)),
+        Operation::Mul(step(2), input(3)),
+    ];
+    let after = few_waiting(&program([1, 2], &steps, &[4, 5]));
+    let at = |wanted: Operation| after.steps.iter().position(|s| s.operation == wanted);
+    let cosine = at(Operation::Cosine(step(0))).expect("a cosine");
+    assert_eq!(at(Operation::Sine(step(0))), Some(cosine + 1));
+    assert_eq!(after.verify(), Ok(()));
+}
