@@ -2154,6 +2154,8 @@ impl DualV {
                 const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
                 /// 2 l_ab²
                 const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+                let place = output;
+                let mut output = [[0.0; 64]; 3];
                 let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let my_platform_on_vx = s_phi * rate_3_squared_leg
@@ -2162,7 +2164,6 @@ impl DualV {
                     + s_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                *output = [[0.0; 64]; 3];
                 output[0][61] = -minus_mx_platform_on_vx;
                 output[0][62] = my_platform_on_vx;
                 output[0][63] = acceleration[0];
@@ -2498,6 +2499,7 @@ impl DualV {
                     );
                     ::overact::lanes::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
+                *place = output;
                 ::core::result::Result::Ok(())
             }
         }
@@ -2530,232 +2532,17 @@ impl DualV {
         output[2][60] = acceleration[2];
         output[2][63] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        // --- platform
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][61] = a_y_platform;
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][62] = -a_x_platform;
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let p_y_leg1 = R_P * c_phi;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][61] = -minus_mx_platform_on_vx;
-        output[1][62] = -minus_mx_platform_on_vx;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-        output[0][62] = my_platform_on_vx;
-        output[1][61] = -my_platform_on_vx;
-        // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-        output[1][41] = -minus_gq2_vy_leg3;
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-        output[0][44] = minus_g2_vx_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-        output[0][34] = g1_vx_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        output[0][41] = -minus_gq2_vx_leg3;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
-        output[1][44] = minus_g2_vy_leg3;
-        let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
-        output[1][34] = g1_vy_leg3;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        output[2][34] = g1_wz_leg3;
-        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        output[2][41] = -minus_gq2_wz_leg3;
-        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-        output[2][44] = gq3_wz_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        output[0][32] = g1_vx_leg3 * rate_1_leg3;
-        output[1][32] = g1_vy_leg3 * rate_1_leg3;
-        output[2][32] = g1_wz_leg3 * rate_1_leg3;
-        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
-        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
-        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-            + minus_g2_vy_leg3 * v_end_y_leg3;
-        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
-        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
-        output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
-        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
-        output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
-        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
-        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
-        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
-        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
-        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
-        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-            + minus_g2_vx_leg3 * a2_x_leg3;
-        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
-        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3)
-            / det_leg3;
-        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-        output[0][30] = zz_1_leg3_on_vx;
-        output[0][31] = zz_1_leg3_on_vx;
-        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
-            / det_leg3;
-        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        output[0][35] = zz_2_leg3_on_vx;
-        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-        output[0][36] = inv_l_ab_a_end_x_leg3
-            - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
-        output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
-        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-            + minus_g2_vy_leg3 * a2_x_leg3;
-        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-            + minus_g2_wz_leg3 * a2_x_leg3;
-        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-        output[1][30] = zz_1_leg3_on_vy;
-        output[1][31] = zz_1_leg3_on_vy;
-        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-        output[2][30] = zz_1_leg3_on_wz;
-        output[2][31] = zz_1_leg3_on_wz;
-        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        output[1][35] = zz_2_leg3_on_vy;
-        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        output[2][35] = zz_2_leg3_on_wz;
-        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-        output[1][36] = inv_l_ab_a_end_y_leg3
-            - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
-        output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
-        output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
-        let r_p_dwz = R_P * acceleration[2];
-        let a3_x_leg3 = a_x_platform + r_p_dwz;
-        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
-        output[2][36] = r_p_per_l_ab_a3_x_leg3
-            - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
-        // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        let k1_leg4 = 1.0 / det_leg4;
-        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-        output[1][59] = -g2_vy_leg4;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
-        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        output[0][49] = -minus_g1_vx_leg4;
-        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        output[0][59] = -g2_vx_leg4;
-        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        output[1][49] = -minus_g1_vy_leg4;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-            + minus_g1_vy_leg4 * v_end_y_leg3;
-        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        output[0][45] = zz_1_leg4_on_vx;
-        output[0][46] = zz_1_leg4_on_vx;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
-        output[0][50] = zz_2_leg4_on_vx;
-        output[0][51] = inv_l_ab_a_end_x_leg3
-            - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
-        output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
-        output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-        output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
-        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
-        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_vx_leg4 * a2_x_leg4);
-        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_vy_leg4 * a2_x_leg4);
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        output[2][49] = -minus_g1_wz_leg4;
-        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_wz_leg4 * a2_x_leg4);
-        output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
-        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-        output[0][56] = gq2_vx_leg4;
-        output[0][54] = qd_2_leg4 * gq2_vx_leg4;
-        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
-        let qd_3_leg4 = twist[2] - rate_2_leg4;
-        output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
-        output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
-        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
-        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
-        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        output[1][45] = zz_1_leg4_on_vy;
-        output[1][46] = zz_1_leg4_on_vy;
-        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        output[2][45] = zz_1_leg4_on_wz;
-        output[2][46] = zz_1_leg4_on_wz;
-        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
-        output[1][50] = zz_2_leg4_on_vy;
-        output[1][51] = inv_l_ab_a_end_y_leg3
-            - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
-        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
-        output[2][50] = zz_2_leg4_on_wz;
-        output[2][51] = r_p_per_l_ab_a3_x_leg3
-            - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
-        output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
-        output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
-        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-        output[1][56] = gq2_vy_leg4;
-        output[1][54] = qd_2_leg4 * gq2_vy_leg4;
-        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        output[2][56] = gq2_wz_leg4;
-        output[2][54] = qd_2_leg4 * gq2_wz_leg4;
-        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
-        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
-        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-        output[2][59] = gq3_wz_leg4;
-        output[2][57] = qd_3_leg4 * gq3_wz_leg4;
-        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
         let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
-        // --- leg1
         let t1_leg1 = x_minus_half_d_x_leg4 - 0.3950502153918333;
         let d_x_leg1 = t1_leg1 + t1_leg1;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
         let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -2764,9 +2551,41 @@ impl DualV {
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        // --- leg2
+        let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        // --- leg3
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][61] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][62] = -a_x_platform;
+        // --- leg1
+        let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
         let k1_leg1 = 1.0 / det_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         output[0][14] = minus_g2_vx_leg1;
@@ -2778,26 +2597,165 @@ impl DualV {
         output[0][4] = g1_vx_leg1;
         let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
         output[0][11] = -minus_gq2_vx_leg1;
+        // --- leg2
+        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        output[0][29] = -g2_vx_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        output[1][29] = -g2_vy_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        output[0][19] = -minus_g1_vx_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        output[0][26] = gq2_vx_leg2;
+        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+        output[1][41] = -minus_gq2_vy_leg3;
+        // --- leg4
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        output[0][59] = -g2_vx_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        output[1][59] = -g2_vy_leg4;
+        // --- leg3
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
+        output[1][44] = minus_g2_vy_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+        output[0][34] = g1_vx_leg3;
+        let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
+        output[1][34] = g1_vy_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        output[2][34] = g1_wz_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        output[0][44] = minus_g2_vx_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        output[0][41] = -minus_gq2_vx_leg3;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        output[0][49] = -minus_g1_vx_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        output[0][56] = gq2_vx_leg4;
+        // --- leg1
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         output[1][4] = g1_vy_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        output[2][4] = -minus_g1_wz_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        output[1][11] = -minus_gq2_vy_leg1;
+        // --- leg2
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        output[1][19] = -minus_g1_vy_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        output[2][19] = g1_wz_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        output[1][26] = gq2_vy_leg2;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        output[2][11] = gq2_wz_leg1;
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        output[2][14] = gq3_wz_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        output[2][26] = -minus_gq2_wz_leg2;
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        output[2][29] = gq3_wz_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        output[2][41] = -minus_gq2_wz_leg3;
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        output[2][44] = gq3_wz_leg3;
+        // --- leg4
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        output[1][49] = -minus_g1_vy_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        output[2][49] = -minus_g1_wz_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        output[1][56] = gq2_vy_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        output[2][56] = gq2_wz_leg4;
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+        output[2][59] = gq3_wz_leg4;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][61] = -minus_mx_platform_on_vx;
+        output[1][62] = -minus_mx_platform_on_vx;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        output[0][62] = my_platform_on_vx;
+        output[1][61] = -my_platform_on_vx;
         let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         output[0][2] = g1_vx_leg1 * rate_1_leg1;
         output[1][2] = g1_vy_leg1 * rate_1_leg1;
+        output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
         output[0][3] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
         output[1][3] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        output[2][4] = -minus_g1_wz_leg1;
-        output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
         output[2][3] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        output[1][11] = -minus_gq2_vy_leg1;
-        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
+        output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+        output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
+        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
+        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
+        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        output[0][32] = g1_vx_leg3 * rate_1_leg3;
+        output[1][32] = g1_vy_leg3 * rate_1_leg3;
+        output[2][32] = g1_wz_leg3 * rate_1_leg3;
+        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
+        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
+        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+        output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+        output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
+        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
+        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
+        output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
+        output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        output[0][24] = qd_2_leg2 * gq2_vx_leg2;
+        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
+        output[1][24] = qd_2_leg2 * gq2_vy_leg2;
+        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
+        output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2);
+        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
+        output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
+        output[2][12] = qd_3_leg1 * gq3_wz_leg1;
+        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
+        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
+        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg1;
@@ -2805,97 +2763,22 @@ impl DualV {
         let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        output[2][0] = -minus_zz_1_leg1_on_wz;
-        output[2][1] = -minus_zz_1_leg1_on_wz;
+        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+        output[0][0] = zz_1_leg1_on_vx;
+        output[0][1] = zz_1_leg1_on_vx;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        output[2][5] = -minus_zz_2_leg1_on_wz;
-        let a3_x_leg1 = r_p_dwz - a_x_platform;
-        let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-        output[2][6] = r_p_per_l_ab_a3_x_leg1
-            + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
-        output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
-        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1;
-        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
-        output[0][0] = zz_1_leg1_on_vx;
-        output[0][1] = zz_1_leg1_on_vx;
-        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
-        output[1][0] = zz_1_leg1_on_vy;
-        output[1][1] = zz_1_leg1_on_vy;
-        output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1;
-        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-            + g2_wz_leg1 * a2_x_leg1);
-        output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
-        output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
-        output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
-        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-        output[2][11] = gq2_wz_leg1;
-        output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
-        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
-        output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
-        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-        output[2][14] = gq3_wz_leg1;
-        output[2][12] = qd_3_leg1 * gq3_wz_leg1;
-        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
         let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         output[0][5] = zz_2_leg1_on_vx;
         let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
         output[0][6] = inv_l_ab_a_end_x_leg1
             - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
-        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        output[1][5] = zz_2_leg1_on_vy;
-        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-        output[1][6] = inv_l_ab_a_end_y_leg1
-            - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
-        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
-        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
         // --- leg2
-        let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
-        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
-        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        output[0][19] = -minus_g1_vx_leg2;
-        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        output[0][29] = -g2_vx_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-        output[1][29] = -g2_vy_leg2;
-        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        output[1][19] = -minus_g1_vy_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-            + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg2 = k1_leg2
@@ -2910,62 +2793,192 @@ impl DualV {
         output[0][20] = zz_2_leg2_on_vx;
         output[0][21] = inv_l_ab_a_end_x_leg1
             - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
-        output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
-        output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
-        output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
-        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
-        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1;
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
         output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
             + g2_vx_leg2 * a2_x_leg2);
+        output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
+        output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1;
+        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1);
+        // --- leg1
+        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+        output[1][0] = zz_1_leg1_on_vy;
+        output[1][1] = zz_1_leg1_on_vy;
+        let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        output[2][0] = -minus_zz_1_leg1_on_wz;
+        output[2][1] = -minus_zz_1_leg1_on_wz;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        output[1][5] = zz_2_leg1_on_vy;
+        let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        output[2][5] = -minus_zz_2_leg1_on_wz;
+        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+        output[1][6] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+        output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
+        output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
+        let r_p_dwz = R_P * acceleration[2];
+        let a3_x_leg1 = r_p_dwz - a_x_platform;
+        let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
+        output[2][6] = r_p_per_l_ab_a3_x_leg1
+            + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+        output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
         output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
             + g2_vy_leg2 * a2_x_leg2);
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        output[2][19] = g1_wz_leg2;
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
             + minus_g2_wz_leg2 * a2_x_leg2;
-        output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
-        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
-        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        output[0][26] = gq2_vx_leg2;
-        output[0][24] = qd_2_leg2 * gq2_vx_leg2;
-        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
-        let qd_3_leg2 = twist[2] - rate_2_leg2;
-        output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
-        output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
-        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
-        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
-        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        output[1][15] = zz_1_leg2_on_vy;
-        output[1][16] = zz_1_leg2_on_vy;
+        // --- leg2
         let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
         output[2][15] = -minus_zz_1_leg2_on_wz;
         output[2][16] = -minus_zz_1_leg2_on_wz;
-        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
-        output[1][20] = zz_2_leg2_on_vy;
-        output[1][21] = inv_l_ab_a_end_y_leg1
-            - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
         let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
         output[2][20] = -minus_zz_2_leg2_on_wz;
         output[2][21] = r_p_per_l_ab_a3_x_leg1
             + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        output[1][15] = zz_1_leg2_on_vy;
+        output[1][16] = zz_1_leg2_on_vy;
+        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
+        output[1][20] = zz_2_leg2_on_vy;
+        output[1][21] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
         output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
         output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        output[1][26] = gq2_vy_leg2;
-        output[1][24] = qd_2_leg2 * gq2_vy_leg2;
-        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-        output[2][26] = -minus_gq2_wz_leg2;
-        output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2);
-        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
-        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
-        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        output[2][29] = gq3_wz_leg2;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
+        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
+        output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
+        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
         output[2][27] = qd_3_leg2 * gq3_wz_leg2;
         output[2][28] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
+        // --- leg3
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+        output[2][30] = zz_1_leg3_on_wz;
+        output[2][31] = zz_1_leg3_on_wz;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        output[2][35] = zz_2_leg3_on_wz;
+        let a3_x_leg3 = a_x_platform + r_p_dwz;
+        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
+        output[2][36] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_wz_leg3 * a2_x_leg3;
+        // --- leg4
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        output[2][45] = zz_1_leg4_on_wz;
+        output[2][46] = zz_1_leg4_on_wz;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
+        output[2][50] = zz_2_leg4_on_wz;
+        output[2][51] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4);
+        output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3;
+        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vy_leg3 * a2_x_leg3;
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        output[0][30] = zz_1_leg3_on_vx;
+        output[0][31] = zz_1_leg3_on_vx;
+        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+        output[1][30] = zz_1_leg3_on_vy;
+        output[1][31] = zz_1_leg3_on_vy;
+        output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        output[0][35] = zz_2_leg3_on_vx;
+        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+        output[0][36] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        output[1][35] = zz_2_leg3_on_vy;
+        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+        output[1][36] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+        output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
+        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
+        output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
+        output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
+        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
+        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
+        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
+        output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
+        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4);
+        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4);
+        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        output[0][45] = zz_1_leg4_on_vx;
+        output[0][46] = zz_1_leg4_on_vx;
+        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        output[1][45] = zz_1_leg4_on_vy;
+        output[1][46] = zz_1_leg4_on_vy;
+        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+        output[0][50] = zz_2_leg4_on_vx;
+        output[0][51] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
+        output[1][50] = zz_2_leg4_on_vy;
+        output[1][51] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+        output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
+        output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        output[0][54] = qd_2_leg4 * gq2_vx_leg4;
+        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
+        output[1][54] = qd_2_leg4 * gq2_vy_leg4;
+        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
+        output[2][54] = qd_2_leg4 * gq2_wz_leg4;
+        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
+        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
+        output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
+        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
+        output[2][57] = qd_3_leg4 * gq3_wz_leg4;
+        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3015,6 +3028,12 @@ impl DualV {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, joints, twist, acceleration) = (
+                *pose,
+                *joints,
+                *twist,
+                *acceleration,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -3034,11 +3053,11 @@ impl DualV {
             output[2][60] = acceleration[2];
             output[2][63] = 0.0;
             // --- sines and cosines
-            let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1),
-            (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
-                joints[9], joints[10],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
+                joints[6], joints[9],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
@@ -3049,8 +3068,104 @@ impl DualV {
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             output[2][62] = -a_x_platform;
             // --- leg1
+            let k1_leg1 = INV_L_AB / s2_leg1;
+            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+            output[0][14] = minus_g2_vx_leg1;
+            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            output[1][14] = minus_g2_vy_leg1;
+            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+            let g1_vx_leg1 = c12_leg1 * k1_leg1;
+            output[0][4] = g1_vx_leg1;
+            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+            let g1_vy_leg1 = s12_leg1 * k1_leg1;
+            output[1][4] = g1_vy_leg1;
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
+            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+            output[2][4] = -minus_g1_wz_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][11] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][14] = gq3_wz_leg1;
+            // --- leg2
+            let k1_leg2 = INV_L_AB / s2_leg2;
+            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+            output[0][29] = minus_g2_vx_leg2;
+            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            output[1][29] = minus_g2_vy_leg2;
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            output[0][19] = g1_vx_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            output[1][19] = g1_vy_leg2;
+            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+            output[2][19] = -minus_g1_wz_leg2;
+            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+            output[0][26] = -minus_gq2_vx_leg2;
+            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
+            output[1][26] = -minus_gq2_vy_leg2;
+            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
+                + p_y_leg1 * minus_g2_vx_leg2;
+            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+            output[2][26] = gq2_wz_leg2;
+            let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
+            output[2][29] = gq3_wz_leg2;
+            // --- leg3
+            let k1_leg3 = INV_L_AB / s2_leg3;
+            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+            output[0][44] = minus_g2_vx_leg3;
+            let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+            output[1][44] = minus_g2_vy_leg3;
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            output[0][34] = g1_vx_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            output[1][34] = g1_vy_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][34] = g1_wz_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3;
+            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][41] = -minus_gq2_wz_leg3;
+            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][44] = gq3_wz_leg3;
+            // --- leg4
+            let k1_leg4 = INV_L_AB / s2_leg4;
+            let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+            output[0][59] = minus_g2_vx_leg4;
+            let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+            output[1][59] = minus_g2_vy_leg4;
+            let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
+            let g1_vx_leg4 = c12_leg4 * k1_leg4;
+            output[0][49] = g1_vx_leg4;
+            let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
+            let g1_vy_leg4 = s12_leg4 * k1_leg4;
+            output[1][49] = g1_vy_leg4;
+            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+            output[2][49] = g1_wz_leg4;
+            let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
+            output[0][56] = -minus_gq2_vx_leg4;
+            let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
+            output[1][56] = -minus_gq2_vy_leg4;
+            let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
+                + p_y_leg1 * minus_g2_vx_leg4;
+            let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
+            output[2][56] = -minus_gq2_wz_leg4;
+            let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
+            output[2][59] = gq3_wz_leg4;
+            // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
@@ -3061,29 +3176,6 @@ impl DualV {
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
             output[1][61] = -my_platform_on_vx;
-            let k1_leg1 = INV_L_AB / s2_leg1;
-            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            output[0][14] = minus_g2_vx_leg1;
-            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            output[1][14] = minus_g2_vy_leg1;
-            let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
-            let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            output[0][4] = g1_vx_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][11] = -minus_gq2_vx_leg1;
-            let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-            let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            output[1][4] = g1_vy_leg1;
-            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
-            output[2][4] = -minus_g1_wz_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][11] = -minus_gq2_vy_leg1;
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][11] = gq2_wz_leg1;
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][14] = gq3_wz_leg1;
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
@@ -3096,6 +3188,32 @@ impl DualV {
                 minus_g1_wz_leg1,
                 rate_1_leg1,
             );
+            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            output[0][17] = g1_vx_leg2 * rate_1_leg2;
+            output[1][17] = g1_vy_leg2 * rate_1_leg2;
+            output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2);
+            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            output[2][18] = -::overact::math::wide::signed(
+                minus_g1_wz_leg2,
+                rate_1_leg2,
+            );
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][32] = g1_vx_leg3 * rate_1_leg3;
+            output[1][32] = g1_vy_leg3 * rate_1_leg3;
+            output[2][32] = g1_wz_leg3 * rate_1_leg3;
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+            output[0][47] = g1_vx_leg4 * rate_1_leg4;
+            output[1][47] = g1_vy_leg4 * rate_1_leg4;
+            output[2][47] = g1_wz_leg4 * rate_1_leg4;
+            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
+            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
+            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
@@ -3114,6 +3232,24 @@ impl DualV {
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
             );
+            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+                + minus_g2_vy_leg2 * v_end_y_leg1;
+            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+            output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
+            output[0][25] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg2,
+                minus_qd_2_leg2,
+            );
+            output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
+            output[1][25] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg2,
+                minus_qd_2_leg2,
+            );
+            output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2);
+            output[2][25] = -::overact::math::wide::signed(
+                gq2_wz_leg2,
+                minus_qd_2_leg2,
+            );
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -3126,6 +3262,28 @@ impl DualV {
                 + l_ab_rate_1_squared_leg1;
             output[0][7] = g1_vx_leg1 * a_on_f2_leg1
                 + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
+            let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+            // --- leg2
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let l_ab_rate_2_squared_leg2 = L_AB * rate_2_squared_leg2;
+            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
+                + s12_leg2 * a_end_y_leg1 + l_ab_rate_2_squared_leg2;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+            let rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
+            let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
+            output[0][15] = zz_1_leg2_on_vx;
+            output[0][16] = zz_1_leg2_on_vx;
+            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+                + l_ab_rate_1_squared_leg2;
+            let minus_rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
+            let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_vx;
+            output[0][21] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+            // --- leg1
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
@@ -3135,9 +3293,10 @@ impl DualV {
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
-            let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
             output[0][6] = inv_l_ab_a_end_x_leg1
                 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+            output[0][22] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
             output[1][7] = g1_vy_leg1 * a_on_f2_leg1
                 + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
@@ -3176,68 +3335,28 @@ impl DualV {
             );
             output[2][12] = qd_3_leg1 * gq3_wz_leg1;
             output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
-            // --- leg2
-            let k1_leg2 = INV_L_AB / s2_leg2;
-            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            output[0][29] = minus_g2_vx_leg2;
-            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
-            output[1][29] = minus_g2_vy_leg2;
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            output[0][19] = g1_vx_leg2;
-            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
-                + minus_g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let l_ab_rate_2_squared_leg2 = L_AB * rate_2_squared_leg2;
-            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
-                + s12_leg2 * a_end_y_leg1 + l_ab_rate_2_squared_leg2;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            output[1][19] = g1_vy_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
-            let rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
-            let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
-            output[0][15] = zz_1_leg2_on_vx;
-            output[0][16] = zz_1_leg2_on_vx;
-            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
-                + l_ab_rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
-            let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            output[0][20] = zz_2_leg2_on_vx;
-            output[0][21] = inv_l_ab_a_end_x_leg1
-                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
-            output[0][17] = g1_vx_leg2 * rate_1_leg2;
-            output[1][17] = g1_vy_leg2 * rate_1_leg2;
-            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
-            output[0][22] = g1_vx_leg2 * a_on_f2_leg2
-                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             output[1][22] = g1_vy_leg2 * a_on_f2_leg2
                 + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
-            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
-            output[2][19] = -minus_g1_wz_leg2;
-            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
-                + p_y_leg1 * minus_g2_vx_leg2;
             output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2
                 + g2_wz_leg2 * minus_a_on_f1_leg2);
-            output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2);
-            output[2][18] = -::overact::math::wide::signed(
-                minus_g1_wz_leg2,
-                rate_1_leg2,
-            );
-            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            output[0][26] = -minus_gq2_vx_leg2;
-            output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
-            output[0][25] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg2,
-                minus_qd_2_leg2,
-            );
+            // --- leg2
+            let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
+            output[2][15] = -minus_zz_1_leg2_on_wz;
+            output[2][16] = -minus_zz_1_leg2_on_wz;
+            let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
+            output[2][20] = -minus_zz_2_leg2_on_wz;
+            output[2][21] = t1_platform
+                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+            output[1][15] = zz_1_leg2_on_vy;
+            output[1][16] = zz_1_leg2_on_vy;
+            let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][20] = zz_2_leg2_on_vy;
+            output[1][21] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
+            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             output[0][27] = minus_g2_vx_leg2 * qd_3_leg2;
             output[0][28] = ::overact::math::wide::signed(
@@ -3249,65 +3368,9 @@ impl DualV {
                 minus_g2_vy_leg2,
                 qd_3_leg2,
             );
-            let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
-            output[1][15] = zz_1_leg2_on_vy;
-            output[1][16] = zz_1_leg2_on_vy;
-            let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
-            output[2][15] = -minus_zz_1_leg2_on_wz;
-            output[2][16] = -minus_zz_1_leg2_on_wz;
-            let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-            output[1][20] = zz_2_leg2_on_vy;
-            output[1][21] = inv_l_ab_a_end_y_leg1
-                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
-            let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
-            output[2][20] = -minus_zz_2_leg2_on_wz;
-            output[2][21] = t1_platform
-                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
-            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
-            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
-            let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
-            output[1][26] = -minus_gq2_vy_leg2;
-            output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
-            let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
-            output[2][26] = gq2_wz_leg2;
-            output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2);
-            output[1][25] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg2,
-                minus_qd_2_leg2,
-            );
-            output[2][25] = -::overact::math::wide::signed(
-                gq2_wz_leg2,
-                minus_qd_2_leg2,
-            );
-            let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
-            output[2][29] = gq3_wz_leg2;
             output[2][27] = qd_3_leg2 * gq3_wz_leg2;
             output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
             // --- leg3
-            let k1_leg3 = INV_L_AB / s2_leg3;
-            let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            output[0][44] = minus_g2_vx_leg3;
-            let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            output[1][44] = minus_g2_vy_leg3;
-            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let g1_vx_leg3 = c12_leg3 * k1_leg3;
-            output[0][34] = g1_vx_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][41] = -minus_gq2_vx_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            output[1][34] = g1_vy_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][32] = g1_vx_leg3 * rate_1_leg3;
-            output[1][32] = g1_vy_leg3 * rate_1_leg3;
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][34] = g1_wz_leg3;
-            output[2][32] = g1_wz_leg3 * rate_1_leg3;
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
@@ -3316,34 +3379,83 @@ impl DualV {
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + L_AB * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
-                + L_AB * rate_1_squared_leg3;
-            output[0][37] = g1_vx_leg3 * a_on_f2_leg3
-                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+            output[2][30] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz;
+            let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+                + L_AB * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_wz;
+            let t2_platform = R_P_SQUARED_PER_L_AB
+                * (acceleration[2] + inv_r_p_a_x_platform);
+            output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+            output[2][37] = g1_wz_leg3 * a_on_f2_leg3
+                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            // --- leg4
+            let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+                + minus_g2_vy_leg4 * v_end_y_leg3;
+            let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+            let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
+            let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3
+                + s12_leg4 * a_end_y_leg3 + l_ab_rate_2_squared_leg4;
+            let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+            let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
+            let rate_dot_1_leg4 = k1_leg4
+                * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
+            let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_wz;
+            output[2][46] = zz_1_leg4_on_wz;
+            let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+                + l_ab_rate_1_squared_leg4;
+            let minus_rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
+            let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_wz;
+            output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+            output[2][52] = g1_wz_leg4 * a_on_f2_leg4
+                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+            output[0][37] = g1_vx_leg3 * a_on_f2_leg3
+                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
+            output[1][37] = g1_vy_leg3 * a_on_f2_leg3
+                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
             output[0][31] = zz_1_leg3_on_vx;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][30] = zz_1_leg3_on_vy;
+            output[1][31] = zz_1_leg3_on_vy;
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = zz_2_leg3_on_vx;
             let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
             output[0][36] = inv_l_ab_a_end_x_leg3
                 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
-            output[1][37] = g1_vy_leg3 * a_on_f2_leg3
-                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            output[2][37] = g1_wz_leg3 * a_on_f2_leg3
-                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = zz_2_leg3_on_vy;
+            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
             output[0][40] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+            output[1][40] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+            output[2][40] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
@@ -3357,99 +3469,43 @@ impl DualV {
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             );
-            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][30] = zz_1_leg3_on_vy;
-            output[1][31] = zz_1_leg3_on_vy;
-            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-            output[2][30] = zz_1_leg3_on_wz;
-            output[2][31] = zz_1_leg3_on_wz;
-            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
-            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = zz_2_leg3_on_wz;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (acceleration[2] + inv_r_p_a_x_platform);
-            output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
-            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = zz_2_leg3_on_vy;
-            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3
-                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
-            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            output[1][41] = -minus_gq2_vy_leg3;
-            output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][41] = -minus_gq2_wz_leg3;
-            output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-            output[1][40] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            );
-            output[2][40] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            );
-            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][44] = gq3_wz_leg3;
             output[2][42] = qd_3_leg3 * gq3_wz_leg3;
             output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
-            // --- leg4
-            let k1_leg4 = INV_L_AB / s2_leg4;
-            let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
-            output[0][59] = minus_g2_vx_leg4;
-            let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
-            output[1][59] = minus_g2_vy_leg4;
-            let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
-            let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-            let g1_vx_leg4 = c12_leg4 * k1_leg4;
-            output[0][49] = g1_vx_leg4;
-            let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
-                + minus_g2_vy_leg4 * v_end_y_leg3;
-            let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
-            let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
-            let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3
-                + s12_leg4 * a_end_y_leg3 + l_ab_rate_2_squared_leg4;
-            let g1_vy_leg4 = s12_leg4 * k1_leg4;
-            output[1][49] = g1_vy_leg4;
-            let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
-            let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
-            let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
-            let rate_dot_1_leg4 = k1_leg4
-                * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
-            let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
-            output[0][45] = zz_1_leg4_on_vx;
-            output[0][46] = zz_1_leg4_on_vx;
-            let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
-                + l_ab_rate_1_squared_leg4;
-            let minus_rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
-            let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-            output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
-            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
-            output[0][47] = g1_vx_leg4 * rate_1_leg4;
-            output[1][47] = g1_vy_leg4 * rate_1_leg4;
-            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
-            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
             output[0][52] = g1_vx_leg4 * a_on_f2_leg4
                 + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
             output[1][52] = g1_vy_leg4 * a_on_f2_leg4
                 + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
-            let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-            output[2][49] = g1_wz_leg4;
-            let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
-                + p_y_leg1 * minus_g2_vx_leg4;
-            output[2][52] = g1_wz_leg4 * a_on_f2_leg4
-                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
-            output[2][47] = g1_wz_leg4 * rate_1_leg4;
-            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
+            let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
+            output[0][45] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx;
+            let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy;
+            let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_vx;
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+            let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_vy;
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
-            let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
-            output[0][56] = -minus_gq2_vx_leg4;
             output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4;
             output[0][55] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg4,
+                minus_qd_2_leg4,
+            );
+            output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
+            output[1][55] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg4,
+                minus_qd_2_leg4,
+            );
+            output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
+            output[2][55] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg4,
                 minus_qd_2_leg4,
             );
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
@@ -3463,37 +3519,6 @@ impl DualV {
                 minus_g2_vy_leg4,
                 qd_3_leg4,
             );
-            let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
-            output[1][45] = zz_1_leg4_on_vy;
-            output[1][46] = zz_1_leg4_on_vy;
-            let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
-            output[2][45] = zz_1_leg4_on_wz;
-            output[2][46] = zz_1_leg4_on_wz;
-            let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
-            output[1][50] = zz_2_leg4_on_vy;
-            output[1][51] = inv_l_ab_a_end_y_leg3
-                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
-            let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-            output[2][50] = zz_2_leg4_on_wz;
-            output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
-            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
-            let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
-            output[1][56] = -minus_gq2_vy_leg4;
-            output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
-            let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
-            output[2][56] = -minus_gq2_wz_leg4;
-            output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
-            output[1][55] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg4,
-                minus_qd_2_leg4,
-            );
-            output[2][55] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg4,
-                minus_qd_2_leg4,
-            );
-            let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
-            output[2][59] = gq3_wz_leg4;
             output[2][57] = qd_3_leg4 * gq3_wz_leg4;
             output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
             ::core::result::Result::Ok(())
@@ -3548,6 +3573,11 @@ impl DualV {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -3571,78 +3601,14 @@ impl DualV {
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-            let p_y_leg1 = R_P * c_phi;
-            // --- leg3
-            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let half_d_x_leg3 = 0.5 * d_x_leg3;
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            let k1_leg3 = 1.0 / det_leg3;
-            let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            output[0][44] = minus_g2_vx_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            output[0][34] = g1_vx_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][41] = -minus_gq2_vx_leg3;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            output[1][44] = minus_g2_vy_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            output[1][34] = g1_vy_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][34] = g1_wz_leg3;
-            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            output[1][41] = -minus_gq2_vy_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][41] = -minus_gq2_wz_leg3;
-            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][44] = gq3_wz_leg3;
-            // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            let k1_leg4 = 1.0 / det_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            output[1][59] = -g2_vy_leg4;
             let half_d_x_leg4 = 0.5 * d_x_leg4;
-            let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            output[0][49] = -minus_g1_vx_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            output[1][49] = -minus_g1_vy_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
-            output[2][49] = -minus_g1_wz_leg4;
-            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            output[1][56] = gq2_vy_leg4;
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            output[0][59] = -g2_vx_leg4;
-            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            output[0][56] = gq2_vx_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            output[2][56] = gq2_wz_leg4;
-            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            output[2][59] = gq3_wz_leg4;
-            // --- leg1
             let half_d_x_leg4_minus_p_x_leg3 = half_d_x_leg4 - p_x_leg3;
             let d_x_leg1 = half_d_x_leg4_minus_p_x_leg3
                 + half_d_x_leg4_minus_p_x_leg3;
+            let p_y_leg1 = R_P * c_phi;
+            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -3651,33 +3617,10 @@ impl DualV {
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            output[0][14] = minus_g2_vx_leg1;
-            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            output[1][14] = minus_g2_vy_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            output[0][4] = g1_vx_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][11] = -minus_gq2_vx_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            output[1][4] = g1_vy_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            output[2][4] = -minus_g1_wz_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][11] = -minus_gq2_vy_leg1;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][11] = gq2_wz_leg1;
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][14] = gq3_wz_leg1;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let half_d_x_leg3 = 0.5 * d_x_leg3;
             // --- leg2
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
@@ -3688,40 +3631,47 @@ impl DualV {
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            // --- leg3
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
             ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg1
+            let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let k1_leg1 = 1.0 / det_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            output[0][4] = g1_vx_leg1;
+            // --- leg2
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            output[0][29] = -g2_vx_leg2;
-            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            output[1][19] = -minus_g1_vy_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             output[0][19] = -minus_g1_vx_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            output[2][19] = g1_wz_leg2;
-            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            output[0][26] = gq2_vx_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            output[1][29] = -g2_vy_leg2;
-            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][26] = gq2_vy_leg2;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            output[2][26] = -minus_gq2_wz_leg2;
-            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-            output[2][29] = gq3_wz_leg2;
-            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            // --- leg3
+            let k1_leg3 = 1.0 / det_leg3;
+            let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            output[0][34] = g1_vx_leg3;
+            // --- leg4
+            let k1_leg4 = 1.0 / det_leg4;
+            let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            output[0][49] = -minus_g1_vx_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
             ::overact::guard::platform(
@@ -3729,17 +3679,24 @@ impl DualV {
                 25.429161076750646,
                 ::overact::ActuatorGroup::All,
             )?;
-            let l_3_1 = s_1_3 / s_1_1;
-            let t1 = g1_vx_leg1 * actuator_velocities[0]
-                - minus_g1_vx_leg2 * actuator_velocities[1]
-                + g1_vx_leg3 * actuator_velocities[2]
-                - minus_g1_vx_leg4 * actuator_velocities[3];
-            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            output[1][19] = -minus_g1_vy_leg2;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            output[1][4] = g1_vy_leg1;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            output[1][34] = g1_vy_leg3;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            output[1][49] = -minus_g1_vy_leg4;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -3749,7 +3706,95 @@ impl DualV {
                 25.592368899353342,
                 ::overact::ActuatorGroup::All,
             )?;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            output[2][19] = g1_wz_leg2;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            output[2][4] = -minus_g1_wz_leg1;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][34] = g1_wz_leg3;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            output[2][49] = -minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 / s_1_1;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let l_3_2 = schur_2_3 / pivot_2;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
+            // --- leg1
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            output[0][14] = minus_g2_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            output[1][14] = minus_g2_vy_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1;
+            // --- leg2
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            output[0][29] = -g2_vx_leg2;
+            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+            output[0][26] = gq2_vx_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            output[1][29] = -g2_vy_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][26] = gq2_vy_leg2;
+            // --- leg3
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            output[0][44] = minus_g2_vx_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            output[1][44] = minus_g2_vy_leg3;
+            let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3;
+            // --- leg4
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            output[0][59] = -g2_vx_leg4;
+            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+            output[0][56] = gq2_vx_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            output[1][59] = -g2_vy_leg4;
+            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+            output[1][56] = gq2_vy_leg4;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][11] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][14] = gq3_wz_leg1;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+            output[2][26] = -minus_gq2_wz_leg2;
+            let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+            output[2][29] = gq3_wz_leg2;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][41] = -minus_gq2_wz_leg3;
+            let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+            output[2][44] = gq3_wz_leg3;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+            output[2][56] = gq2_wz_leg4;
+            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[2][59] = gq3_wz_leg4;
+            let t1 = g1_vx_leg1 * actuator_velocities[0]
+                - minus_g1_vx_leg2 * actuator_velocities[1]
+                + g1_vx_leg3 * actuator_velocities[2]
+                - minus_g1_vx_leg4 * actuator_velocities[3];
             let t2 = g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
                 + g1_vy_leg3 * actuator_velocities[2]
@@ -3759,14 +3804,6 @@ impl DualV {
                 + g1_wz_leg3 * actuator_velocities[2]
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
-            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3076928490286828,
-                ::overact::ActuatorGroup::All,
-            )?;
             let wz = t3 / pivot_3;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
@@ -3876,52 +3913,6 @@ impl DualV {
             output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
             output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2);
             output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2);
-            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-                + minus_g2_vy_leg3 * v_end_y_leg3;
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
-            output[0][40] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            );
-            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
-            output[1][40] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            );
-            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
-            output[2][40] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            );
-            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][54] = gq2_vx_leg4 * qd_2_leg4;
-            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
-            output[1][54] = gq2_vy_leg4 * qd_2_leg4;
-            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
-            output[2][54] = gq2_wz_leg4 * qd_2_leg4;
-            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
-            output[0][43] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            );
-            output[1][43] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            );
-            let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
-            output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
-            output[2][57] = gq3_wz_leg4 * qd_3_leg4;
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
-            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
-            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
             // --- leg1
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
@@ -3949,6 +3940,8 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
+            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+                + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
@@ -3962,6 +3955,7 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -4133,12 +4127,6 @@ impl DualV {
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
             output[0][31] = zz_1_leg3_on_vx;
-            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = zz_2_leg3_on_vx;
-            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
             output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
                 + minus_g2_vy_leg3 * a2_x_leg3;
             output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
@@ -4153,13 +4141,48 @@ impl DualV {
             let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
             output[1][30] = zz_1_leg3_on_vy;
             output[1][31] = zz_1_leg3_on_vy;
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = zz_2_leg3_on_vx;
+            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = zz_2_leg3_on_vy;
             let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
             output[1][36] = inv_l_ab_a_end_y_leg3
                 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
             output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
+            output[0][40] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
+            output[1][40] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
+            output[2][40] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            );
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
+            output[0][43] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            );
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
+            output[1][43] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            );
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
             output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
                 + g2_vx_leg4 * a2_x_leg4);
@@ -4169,19 +4192,33 @@ impl DualV {
             let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
             output[0][46] = zz_1_leg4_on_vx;
+            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy;
             let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
             output[0][51] = inv_l_ab_a_end_x_leg3
                 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
-            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = zz_1_leg4_on_vy;
-            output[1][46] = zz_1_leg4_on_vy;
             let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
             output[1][51] = inv_l_ab_a_end_y_leg3
                 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
             output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][54] = gq2_vx_leg4 * qd_2_leg4;
+            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
+            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
+            output[1][54] = gq2_vy_leg4 * qd_2_leg4;
+            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
+            output[2][54] = gq2_wz_leg4 * qd_2_leg4;
+            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
+            output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
+            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
+            output[2][57] = gq3_wz_leg4 * qd_3_leg4;
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][61] = -minus_mx_platform_on_vx;
             output[1][62] = -minus_mx_platform_on_vx;
@@ -4231,6 +4268,7 @@ impl DualV {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -4275,21 +4313,6 @@ impl DualV {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let half_d_y_leg1 = 0.5 * d_y_leg1;
-            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let v_arm_x_leg3 = p_y_leg1 * twist[2];
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -4297,26 +4320,148 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            // --- leg3
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg1
+            let k1_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            // --- leg2
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let k1_leg3 = 1.0 / det_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+            let det_ja = g1_wz_leg3 * t1;
+            ::overact::guard::platform(
+                det_ja,
+                3.5376915986291904,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let half_per_det_ja = 0.5 / det_ja;
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][14] = wz_by_a3;
+            output[2][29] = wz_by_a3;
+            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+            output[2][60] = zz_platform_on_q1_leg3;
+            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
+                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
+            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+            output[0][60] = zz_platform_on_q1_leg1;
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            // --- platform
+            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
+            output[1][60] = -minus_zz_platform_on_q1_leg2;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+                + wz_by_a3_a_x_platform;
+            output[2][62] = -minus_my_platform_on_q1_leg3;
+            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
+                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+                * half_per_det_ja;
+            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[0][63] = m_platform_on_q1_leg1;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
+                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+                * half_per_det_ja;
+            let m_platform_on_q1_leg2 = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * acceleration[1];
+            output[1][63] = m_platform_on_q1_leg2;
+            // --- leg1
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][2] = rate_1_leg1;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[1][17] = -minus_rate_1_leg2;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2);
-            // --- leg1
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][32] = rate_1_leg3;
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            output[2][61] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
+                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
+            output[1][11] = g2_a2_leg1;
+            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -4328,7 +4473,33 @@ impl DualV {
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
             output[0][0] = rate_dot_1_leg1;
             output[0][1] = rate_dot_1_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+            let t2_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
+                    + t1_platform);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+            let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+            let t4_platform = R_P_SQUARED_PER_L_AB
+                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                    + t3_platform);
+            output[1][6] = t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
@@ -4342,62 +4513,6 @@ impl DualV {
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
             output[1][15] = -minus_rate_dot_1_leg2;
             output[1][16] = -minus_rate_dot_1_leg2;
-            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
-            // --- leg3
-            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-            let k1_leg3 = 1.0 / det_leg3;
-            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][32] = rate_1_leg3;
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-            let det_ja = g1_wz_leg3 * t1;
-            let half_per_det_ja = 0.5 / det_ja;
-            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
-                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
-                * half_per_det_ja;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
-                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            // --- leg1
-            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
-                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
-                * half_per_det_ja;
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
@@ -4407,22 +4522,14 @@ impl DualV {
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_q1_leg2;
-            let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
-                - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            output[1][11] = g2_a2_leg1;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][21] = t4_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
             output[0][26] = g2_a1_leg2;
             let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_q1_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
-            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
-            let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][14] = wz_by_a3;
-            output[2][29] = wz_by_a3;
+            output[0][21] = t2_platform - L_AB * zz_2_leg2_on_q1_leg1;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
             output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
@@ -4442,6 +4549,7 @@ impl DualV {
                 qd_3_leg1,
             );
             output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = g2_a1_leg2 * qd_2_leg2;
             output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
@@ -4483,86 +4591,24 @@ impl DualV {
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             );
-            // --- platform
-            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
-            output[0][60] = zz_platform_on_q1_leg1;
-            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
-            output[1][60] = -minus_zz_platform_on_q1_leg2;
-            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
-            output[2][60] = zz_platform_on_q1_leg3;
-            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            output[0][63] = m_platform_on_q1_leg1;
-            let m_platform_on_q1_leg2 = vx_by_a2 * acceleration[0]
-                - minus_vy_by_a2 * acceleration[1];
-            output[1][63] = m_platform_on_q1_leg2;
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
-                + wz_by_a3_a_x_platform;
-            output[2][62] = -minus_my_platform_on_q1_leg3;
-            output[2][63] = R_P * wz_by_a3_a_x_platform;
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][61] = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[0][62] = my_platform_on_q1_leg1;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
-            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            output[0][6] = t2_platform
-                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
-            output[0][21] = t2_platform - L_AB * zz_2_leg2_on_q1_leg1;
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            output[1][62] = my_platform_on_q1_leg2;
-            let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
-            let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t4_platform = R_P_SQUARED_PER_L_AB
-                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
-                    + t3_platform);
-            output[1][21] = t4_platform
-                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
-            output[1][6] = t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3;
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg3;
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][41] = g2_a2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
             output[2][30] = rate_dot_1_leg3;
             output[2][31] = rate_dot_1_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
@@ -4573,12 +4619,21 @@ impl DualV {
             let t5_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
             output[2][36] = t5_platform
                 - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3;
             let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
             output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][41] = g2_a2_leg3;
             let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
             let t7_platform = R_P_SQUARED_PER_L_AB
@@ -4586,9 +4641,8 @@ impl DualV {
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
             output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
-            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
             output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
@@ -4630,21 +4684,8 @@ impl DualV {
                 qd_3_leg3,
             );
             // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            ::overact::guard::platform(
-                det_ja,
-                3.5376915986291904,
-                ::overact::ActuatorGroup::Kept,
-            )?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -4826,6 +4867,12 @@ impl DualV {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, joints, twist, acceleration) = (
+                *pose,
+                *joints,
+                *twist,
+                *acceleration,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -4854,11 +4901,11 @@ impl DualV {
             output[2][15..27].fill(0.0);
             output[2][34] = 1.0;
             // --- sines and cosines
-            let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi),
-            (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                joints[1], joints[0], pose[2], joints[3], joints[4], joints[6], joints[7],
-                joints[9], joints[10],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s2_leg4, c2_leg4), (s1_leg1, c1_leg1), (s_phi, c_phi),
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[4], joints[7], joints[10], joints[0], pose[2], joints[3],
+                joints[6], joints[9],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
@@ -4869,22 +4916,111 @@ impl DualV {
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let p_x_leg3 = R_P * s_phi;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let p_y_leg1 = R_P * c_phi;
+            let g1_vx_leg1 = c12_leg1 * k1_leg1;
+            let g1_vy_leg1 = s12_leg1 * k1_leg1;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let k1_leg2 = INV_L_AB / s2_leg2;
+            let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let k1_leg3 = INV_L_AB / s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            let g1_vx_leg3 = c12_leg3 * k1_leg3;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+            let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
+            let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+            let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
+            let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
+            ::overact::guard::platform(
+                det_ja,
+                7.075383197161306,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
+                * inv_det_ja;
+            output[2][14] = -minus_wz_by_a3;
+            output[2][29] = -minus_wz_by_a3;
+            let wz_by_a2 = t3 * inv_det_ja;
+            let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
+            output[1][60] = zz_platform_on_q1_leg2;
+            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
+            output[2][60] = -minus_zz_platform_on_q1_leg3;
+            let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
+                + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
+            let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
+                * inv_det_ja;
+            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
+            output[0][63] = m_platform_on_q1_leg1;
+            let minus_vx_by_a2 = t2 * inv_det_ja;
+            let vy_by_a2 = t1 * inv_det_ja;
+            let m_platform_on_q1_leg2 = vy_by_a2 * acceleration[1]
+                - minus_vx_by_a2 * acceleration[0];
+            output[1][63] = m_platform_on_q1_leg2;
+            let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
+                * inv_det_ja;
+            // --- platform
+            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+            output[0][60] = zz_platform_on_q1_leg1;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
+            let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
+                + minus_wz_by_a3_a_x_platform;
+            output[2][62] = my_platform_on_q1_leg3;
+            output[2][63] = -(R_P * minus_wz_by_a3_a_x_platform);
+            // --- leg1
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            let g1_vy_leg1 = s12_leg1 * k1_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             output[0][2] = rate_1_leg1;
+            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            output[1][17] = rate_1_leg2;
             output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            output[1][18] = ::overact::math::wide::sign(rate_1_leg2);
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][32] = rate_1_leg3;
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
+            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
+            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
+            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+                + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
+                - minus_wz_by_a3 * a_y_platform;
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
+            let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
+            output[1][62] = -minus_my_platform_on_q1_leg2;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
+                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
+            output[1][11] = g2_a2_leg1;
+            let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -4896,16 +5032,32 @@ impl DualV {
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
             output[0][0] = rate_dot_1_leg1;
             output[0][1] = rate_dot_1_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+                + L_AB * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+            let t2_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
+                    + t1_platform);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
+            output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
+            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+            let t5_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
+            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
             // --- leg2
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let k1_leg2 = INV_L_AB / s2_leg2;
-            let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            output[1][17] = rate_1_leg2;
-            output[1][18] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
@@ -4919,54 +5071,6 @@ impl DualV {
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
             output[1][15] = rate_dot_1_leg2;
             output[1][16] = rate_dot_1_leg2;
-            output[1][23] = L_AB_SQUARED * rate_dot_1_leg2;
-            // --- leg3
-            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-            let k1_leg3 = INV_L_AB / s2_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            let g1_vx_leg3 = c12_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][32] = rate_1_leg3;
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
-            let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
-            let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
-            let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-            let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
-            let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-            ::overact::guard::platform(
-                det_ja,
-                7.075383197161306,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
-                + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
-            let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
-                * inv_det_ja;
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
-                * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-                + L_AB * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
-            let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
-                * inv_det_ja;
-            output[2][14] = -minus_wz_by_a3;
-            output[2][29] = -minus_wz_by_a3;
-            let minus_vx_by_a2 = t2 * inv_det_ja;
-            let vy_by_a2 = t1 * inv_det_ja;
-            let wz_by_a2 = t3 * inv_det_ja;
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
@@ -4977,18 +5081,14 @@ impl DualV {
                 - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][20] = -minus_zz_2_leg2_on_q1_leg2;
-            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
-                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            output[1][11] = g2_a2_leg1;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][21] = t5_platform
+                - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2);
             let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
             output[0][26] = g2_a1_leg2;
             let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][20] = -minus_zz_2_leg2_on_q1_leg1;
-            output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
-            output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
+            output[0][21] = t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1;
             output[1][22] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
             output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
@@ -5010,6 +5110,7 @@ impl DualV {
                 minus_wz_by_a3,
                 qd_3_leg1,
             );
+            output[1][23] = L_AB_SQUARED * rate_dot_1_leg2;
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2);
             output[0][25] = -::overact::math::wide::signed(
@@ -5057,58 +5158,6 @@ impl DualV {
                 off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             );
-            // --- platform
-            let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
-            output[0][60] = zz_platform_on_q1_leg1;
-            let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
-            output[1][60] = zz_platform_on_q1_leg2;
-            let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
-            output[2][60] = -minus_zz_platform_on_q1_leg3;
-            let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            output[0][63] = m_platform_on_q1_leg1;
-            let m_platform_on_q1_leg2 = vy_by_a2 * acceleration[1]
-                - minus_vx_by_a2 * acceleration[0];
-            output[1][63] = m_platform_on_q1_leg2;
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
-            let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
-                + minus_wz_by_a3_a_x_platform;
-            output[2][62] = my_platform_on_q1_leg3;
-            output[2][63] = -(R_P * minus_wz_by_a3_a_x_platform);
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
-                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
-            let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
-            let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
-                + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
-                - minus_wz_by_a3 * a_y_platform;
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[0][62] = my_platform_on_q1_leg1;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
-            let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
-            let t2_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
-                    + t1_platform);
-            output[0][6] = t2_platform
-                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
-            output[0][21] = t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1;
-            let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
-            output[1][62] = -minus_my_platform_on_q1_leg2;
-            let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
-            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t5_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
-            output[1][21] = t5_platform
-                - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2);
-            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -5371,6 +5420,11 @@ impl DualV {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -5415,10 +5469,6 @@ impl DualV {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -5426,12 +5476,8 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -5442,10 +5488,30 @@ impl DualV {
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg1
+            let k1_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            // --- leg2
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg1
@@ -5464,46 +5530,86 @@ impl DualV {
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
+            ::overact::guard::platform(
+                det_ja,
+                3.5376915986291904,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            // --- leg4
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let k1_leg4 = 1.0 / det_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+            ::overact::guard::platform(
+                s_1_1,
+                25.429161076750646,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+            let l_2_1 = s_1_2 * inv_pivot_1;
+            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                25.592368899353342,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 * inv_pivot_1;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let l_3_2 = schur_2_3 * inv_pivot_2;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][14] = wz_by_a3;
             output[2][29] = wz_by_a3;
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
-            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][44] = off_3_leg3_on_q1_leg3;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
+            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+            output[2][49] = -minus_g1_a3_leg4;
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
                 + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
                 * half_per_det_ja;
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3;
-            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
-            output[0][44] = off_3_leg3_on_q1_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][49] = g1_a1_leg4;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
                 * half_per_det_ja;
             let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
                 * half_per_det_ja;
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][41] = g2_a2_leg3;
-            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][49] = g1_a2_leg4;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
@@ -5533,38 +5639,6 @@ impl DualV {
             output[0][29] = off_3_leg2_on_q1_leg1;
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][29] = -minus_off_3_leg2_on_q1_leg2;
-            // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            ::overact::guard::platform(
-                det_ja,
-                3.5376915986291904,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][49] = g1_a1_leg4;
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][49] = g1_a2_leg4;
-            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            output[2][49] = -minus_g1_a3_leg4;
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
@@ -5586,43 +5660,6 @@ impl DualV {
             output[2][56] = off_2_leg4_on_q1_leg3;
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
             output[2][59] = off_3_leg4_on_q1_leg3;
-            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let inv_pivot_1 = 1.0 / s_1_1;
-            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-            let l_3_1 = s_1_3 * inv_pivot_1;
-            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-            let l_2_1 = s_1_2 * inv_pivot_1;
-            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.592368899353342,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let inv_pivot_2 = 1.0 / pivot_2;
-            let l_3_2 = schur_2_3 * inv_pivot_2;
-            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3076928490286828,
-                ::overact::ActuatorGroup::All,
-            )?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t2 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -5679,7 +5716,9 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let v_end_x_leg3 = vx + v_arm_x_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
@@ -5738,20 +5777,16 @@ impl DualV {
             output[2][52] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
-            // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = zz_2_leg3_on_q1_leg3;
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][30] = rate_dot_1_leg3;
-            output[2][31] = rate_dot_1_leg3;
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -5783,6 +5818,13 @@ impl DualV {
             output[1][16] = -minus_rate_dot_1_leg2;
             output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][30] = rate_dot_1_leg3;
+            output[2][31] = rate_dot_1_leg3;
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_q1_leg3;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
@@ -5847,110 +5889,51 @@ impl DualV {
             output[2][27] = wz_by_a3 * qd_3_leg2;
             output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
             output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
-            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
             output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
-            // --- platform
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            output[2][60] = zz_platform_on_q1_leg3;
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
-                + wz_by_a3_a_x_platform;
-            output[2][62] = -minus_my_platform_on_q1_leg3;
-            let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t1_platform
-                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
+            // --- leg4
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            output[2][45] = zz_1_leg4_on_q1_leg3;
-            output[2][46] = zz_1_leg4_on_q1_leg3;
-            output[2][51] = t1_platform
-                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
-            output[2][63] = R_P * wz_by_a3_a_x_platform;
-            // --- leg3
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
-            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
-            output[2][40] = ::overact::math::wide::signed(
-                minus_off_2_leg3_on_q1_leg3,
-                minus_qd_2_leg3,
-            );
-            output[0][40] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            );
-            output[1][40] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            );
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            );
-            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
-            output[1][43] = -::overact::math::wide::signed(
-                minus_off_3_leg3_on_q1_leg2,
-                qd_3_leg3,
-            );
-            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
-            output[2][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg3,
-                qd_3_leg3,
-            );
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
+            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
             output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4);
             output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4);
             output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            );
             output[0][48] = -::overact::math::wide::signed(
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][48] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            );
-            // --- leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
             output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
-            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
-            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
+            output[1][48] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
             let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
             output[1][45] = -minus_zz_1_leg4_on_q1_leg2;
             output[1][46] = -minus_zz_1_leg4_on_q1_leg2;
+            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3;
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
             let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_q1_leg1;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_q1_leg2;
             output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1);
             output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2);
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
             output[0][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
-            );
-            let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
-            output[0][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg1,
-                qd_3_leg4,
             );
             output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
             output[1][55] = ::overact::math::wide::signed(
@@ -5961,6 +5944,12 @@ impl DualV {
             output[2][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
+            );
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
+            output[0][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg1,
+                qd_3_leg4,
             );
             output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2);
             output[1][58] = -::overact::math::wide::signed(
@@ -5977,50 +5966,117 @@ impl DualV {
             output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
             // --- platform
-            let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
-            output[0][60] = zz_platform_on_q1_leg1;
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
             output[0][62] = my_platform_on_q1_leg1;
-            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][60] = zz_platform_on_q1_leg3;
+            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+                + wz_by_a3_a_x_platform;
+            output[2][62] = -minus_my_platform_on_q1_leg3;
+            let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+            output[2][36] = t1_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
+            output[2][51] = t1_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][44] = off_3_leg3_on_q1_leg3;
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
+            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][41] = g2_a2_leg3;
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
             let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
             output[0][63] = m_platform_on_q1_leg1;
+            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[1][63] = m_platform_on_q1_leg2;
+            let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
+            output[0][60] = zz_platform_on_q1_leg1;
+            let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
             let t2_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
             let t3_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t2_platform);
             output[0][6] = t3_platform
                 - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            output[1][62] = my_platform_on_q1_leg2;
+            let t4_platform = R_P_SQUARED_PER_L_AB
+                * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
+                    + t2_platform);
+            output[0][51] = t4_platform
+                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+            output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1;
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
             let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
             output[1][60] = -minus_zz_platform_on_q1_leg2;
-            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
-            output[1][63] = m_platform_on_q1_leg2;
-            let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
-            let t5_platform = R_P_SQUARED_PER_L_AB
-                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
-                    + t4_platform);
-            output[1][21] = t5_platform
-                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
+            let t5_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t6_platform = R_P_SQUARED_PER_L_AB
-                * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
-                    + t2_platform);
-            output[0][51] = t6_platform
-                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+                * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                    + t5_platform);
+            output[1][21] = t6_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
             let t7_platform = R_P_SQUARED_PER_L_AB
-                * (t4_platform
+                * (t5_platform
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
             output[1][51] = t7_platform
                 - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
-            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
-            output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1;
-            output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            // --- leg3
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
             output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
+            output[0][40] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            );
+            output[1][40] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            );
+            output[2][40] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            );
+            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            );
+            output[1][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            );
+            output[2][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg3,
+                qd_3_leg3,
+            );
             ::core::result::Result::Ok(())
         })
     }
@@ -6083,6 +6139,9 @@ impl DualV {
                 const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
                 /// 2 l_ab²
                 const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+                output[0][0] = 0.0;
+                output[1][0] = 0.0;
+                output[2][3] = 0.0;
                 let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
                 // --- leg
                 let rate_3_squared_leg = twist[2] * twist[2];
@@ -6092,7 +6151,6 @@ impl DualV {
                     - c_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                *output = [[0.0; 49]; 3];
                 output[0][1] = -minus_mx_platform_on_vx;
                 output[0][2] = my_platform_on_vx;
                 output[0][3] = acceleration[0];
@@ -6431,24 +6489,9 @@ impl DualV {
         output[2][0] = acceleration[2];
         output[2][3] = 0.0;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        // --- platform
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][1] = a_y_platform;
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][2] = -a_x_platform;
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
-        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][1] = -minus_mx_platform_on_vx;
-        output[1][2] = -minus_mx_platform_on_vx;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
-        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-        output[0][2] = my_platform_on_vx;
-        output[1][1] = -my_platform_on_vx;
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let half_d_x_leg3 = 0.5 * d_x_leg3;
@@ -6461,85 +6504,8 @@ impl DualV {
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        let k1_leg1 = 1.0 / det_leg1;
-        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        output[0][48] = minus_g2_vx_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        output[0][16] = g1_vx_leg1;
-        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-        output[0][36] = -minus_gq2_vx_leg1;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        output[1][48] = minus_g2_vy_leg1;
-        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        output[1][16] = g1_vy_leg1;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        output[2][16] = -minus_g1_wz_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        output[1][36] = -minus_gq2_vy_leg1;
-        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-        output[2][36] = gq2_wz_leg1;
-        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-        output[2][48] = gq3_wz_leg1;
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        output[0][8] = g1_vx_leg1 * rate_1_leg1;
-        output[1][8] = g1_vy_leg1 * rate_1_leg1;
-        output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
-        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
-        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
-        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-            + minus_g2_vy_leg1 * v_end_y_leg1;
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
-        output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
-        output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
-        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
-        output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
-        output[2][40] = qd_3_leg1 * gq3_wz_leg1;
-        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
-        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
-        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
-        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
-        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
-        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-            + minus_g2_vx_leg1 * a2_x_leg1;
-        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
-        let rate_dot_1_leg1 = k1_leg1
-            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
-        let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
-        output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
-        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
-            + minus_g2_vy_leg1 * a2_x_leg1;
-        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-            + g2_wz_leg1 * a2_x_leg1);
-        output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
         // --- leg2
@@ -6550,10 +6516,55 @@ impl DualV {
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
-        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        // --- leg3
+        let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
+        let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        output[2][1] = a_y_platform;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        output[2][2] = -a_x_platform;
+        // --- leg1
+        let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
+        let k1_leg1 = 1.0 / det_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        output[0][48] = minus_g2_vx_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        output[1][48] = minus_g2_vy_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        output[0][16] = g1_vx_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        output[0][36] = -minus_gq2_vx_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        output[1][16] = g1_vy_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        output[2][16] = -minus_g1_wz_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        output[1][36] = -minus_gq2_vy_leg1;
+        // --- leg2
+        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         output[0][17] = -minus_g1_vx_leg2;
@@ -6561,19 +6572,164 @@ impl DualV {
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         output[1][17] = -minus_g1_vy_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        output[2][17] = g1_wz_leg2;
+        // --- leg3
+        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        output[0][18] = g1_vx_leg3;
+        let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        output[1][18] = g1_vy_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        output[2][18] = g1_wz_leg3;
+        // --- leg4
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        output[0][19] = -minus_g1_vx_leg4;
+        let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        output[1][19] = -minus_g1_vy_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        output[2][19] = -minus_g1_wz_leg4;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        output[2][36] = gq2_wz_leg1;
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        output[2][48] = gq3_wz_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        output[0][37] = gq2_vx_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        output[1][37] = gq2_vy_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        output[2][37] = -minus_gq2_wz_leg2;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        output[0][38] = -minus_gq2_vx_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        output[1][38] = -minus_gq2_vy_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        output[2][38] = -minus_gq2_wz_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        output[0][39] = gq2_vx_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        output[1][39] = gq2_vy_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        output[2][39] = gq2_wz_leg4;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        output[0][1] = -minus_mx_platform_on_vx;
+        output[1][2] = -minus_mx_platform_on_vx;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        output[0][2] = my_platform_on_vx;
+        output[1][1] = -my_platform_on_vx;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        output[0][8] = g1_vx_leg1 * rate_1_leg1;
+        output[1][8] = g1_vy_leg1 * rate_1_leg1;
+        output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
+        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
+        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
+        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2;
         output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2;
+        output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
         output[0][13] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
         output[1][13] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        output[2][17] = g1_wz_leg2;
-        output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
         output[2][13] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        output[0][10] = g1_vx_leg3 * rate_1_leg3;
+        output[1][10] = g1_vy_leg3 * rate_1_leg3;
+        output[2][10] = g1_wz_leg3 * rate_1_leg3;
+        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
+        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
+        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
+        output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
+        output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
+        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
+        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
+        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
+        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
+        output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
+        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
+        output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
+        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        output[0][29] = qd_2_leg2 * gq2_vx_leg2;
+        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
+        output[1][29] = qd_2_leg2 * gq2_vy_leg2;
+        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
+        output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2);
+        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
+        output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
+        output[2][40] = qd_3_leg1 * gq3_wz_leg1;
+        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
+        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
+        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
+        output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
+        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
+        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        output[2][41] = qd_3_leg2 * gq3_wz_leg2;
+        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vx_leg1 * a2_x_leg1;
+        // --- leg2
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
@@ -6590,73 +6746,22 @@ impl DualV {
         output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         output[0][21] = g2_vx_leg2 * rate_dot_2_leg2;
+        output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
+        output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
+        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vy_leg1 * a2_x_leg1;
+        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1);
+        output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
         output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2);
-        output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
         output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
             + g2_vy_leg2 * a2_x_leg2);
         output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
             + minus_g2_wz_leg2 * a2_x_leg2;
-        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        output[0][37] = gq2_vx_leg2;
-        output[0][29] = qd_2_leg2 * gq2_vx_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        output[1][37] = gq2_vy_leg2;
-        output[1][29] = qd_2_leg2 * gq2_vy_leg2;
-        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-        output[2][37] = -minus_gq2_wz_leg2;
-        output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2);
-        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
-        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
-        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
-        let qd_3_leg2 = twist[2] - rate_2_leg2;
-        output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
-        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
-        output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
-        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
-        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        output[2][41] = qd_3_leg2 * gq3_wz_leg2;
-        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
-        // --- leg3
-        let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
-        let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        output[0][18] = g1_vx_leg3;
-        let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        output[1][18] = g1_vy_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        output[0][10] = g1_vx_leg3 * rate_1_leg3;
-        output[1][10] = g1_vy_leg3 * rate_1_leg3;
-        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
-        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        output[2][18] = g1_wz_leg3;
-        output[2][10] = g1_wz_leg3 * rate_1_leg3;
-        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
-        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        output[0][38] = -minus_gq2_vx_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-        output[1][38] = -minus_gq2_vy_leg3;
+        output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
+        output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
@@ -6664,38 +6769,69 @@ impl DualV {
         output[0][34] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
         output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
         output[1][34] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
+        output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
+        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        output[0][31] = qd_2_leg4 * gq2_vx_leg4;
+        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
+        output[1][31] = qd_2_leg4 * gq2_vy_leg4;
+        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
+        output[2][31] = qd_2_leg4 * gq2_wz_leg4;
+        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
+        // --- leg3
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
-        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-            + minus_g2_vx_leg3 * a2_x_leg3;
         let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
         output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3;
+        // --- leg4
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4);
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
         output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
         output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
         output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
             + minus_g2_vy_leg3 * a2_x_leg3;
-        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
         output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
             + minus_g2_wz_leg3 * a2_x_leg3;
+        output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4);
+        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4);
         output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        output[2][38] = -minus_gq2_wz_leg3;
-        output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
+        output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
         output[0][46] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
@@ -6704,74 +6840,6 @@ impl DualV {
         let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
         output[2][42] = qd_3_leg3 * gq3_wz_leg3;
         output[2][46] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
-        // --- leg4
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        output[0][19] = -minus_g1_vx_leg4;
-        let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
-        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        output[1][19] = -minus_g1_vy_leg4;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-            + minus_g1_vy_leg4 * v_end_y_leg3;
-        output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-        output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
-        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        output[2][19] = -minus_g1_wz_leg4;
-        output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
-        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
-        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_wz_leg4 * a2_x_leg4);
-        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-        output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-        output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
-        output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
-        output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
-        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_vx_leg4 * a2_x_leg4);
-        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
-            + g2_vy_leg4 * a2_x_leg4);
-        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-        output[0][39] = gq2_vx_leg4;
-        output[0][31] = qd_2_leg4 * gq2_vx_leg4;
-        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-        output[1][39] = gq2_vy_leg4;
-        output[1][31] = qd_2_leg4 * gq2_vy_leg4;
-        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        output[2][39] = gq2_wz_leg4;
-        output[2][31] = qd_2_leg4 * gq2_wz_leg4;
-        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
-        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
-        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
         let qd_3_leg4 = twist[2] - rate_2_leg4;
         output[0][43] = -(g2_vx_leg4 * qd_3_leg4);
         output[0][47] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
@@ -6829,6 +6897,12 @@ impl DualV {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, joints, twist, acceleration) = (
+                *pose,
+                *joints,
+                *twist,
+                *acceleration,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -6844,11 +6918,11 @@ impl DualV {
             output[2][0] = acceleration[2];
             output[2][3] = 0.0;
             // --- sines and cosines
-            let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1),
-            (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
-                joints[9], joints[10],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
+                joints[6], joints[9],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
@@ -6879,13 +6953,13 @@ impl DualV {
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let g1_vx_leg1 = c12_leg1 * k1_leg1;
             output[0][16] = g1_vx_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][36] = -minus_gq2_vx_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let g1_vy_leg1 = s12_leg1 * k1_leg1;
             output[1][16] = g1_vy_leg1;
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             output[2][16] = -minus_g1_wz_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1;
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
             output[1][36] = -minus_gq2_vy_leg1;
             let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
@@ -7271,6 +7345,11 @@ impl DualV {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -7288,64 +7367,8 @@ impl DualV {
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
-            // --- leg3
             let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
-            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-            output[1][38] = -minus_gq2_vy_leg3;
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-            output[0][18] = g1_vx_leg3;
             let half_d_y_leg3 = 0.5 * d_y_leg3;
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let g1_vy_leg3 = l2_y_leg3 / det_leg3;
-            output[1][18] = g1_vy_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][18] = g1_wz_leg3;
-            let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][38] = -minus_gq2_vx_leg3;
-            let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
-            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
-                + p_y_leg1 * minus_g2_vx_leg3;
-            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][38] = -minus_gq2_wz_leg3;
-            // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            let k1_leg4 = 1.0 / det_leg4;
-            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            output[0][19] = -minus_g1_vx_leg4;
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            output[1][19] = -minus_g1_vy_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
-            output[2][19] = -minus_g1_wz_leg4;
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            output[0][39] = gq2_vx_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            output[1][39] = gq2_vy_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            output[2][39] = gq2_wz_leg4;
-            // --- leg1
             let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -7358,31 +7381,6 @@ impl DualV {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            output[0][48] = minus_g2_vx_leg1;
-            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            output[1][48] = minus_g2_vy_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            output[0][16] = g1_vx_leg1;
-            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][36] = -minus_gq2_vx_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            output[1][16] = g1_vy_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            output[2][16] = -minus_g1_wz_leg1;
-            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][36] = -minus_gq2_vy_leg1;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][36] = gq2_wz_leg1;
-            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][48] = gq3_wz_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -7390,38 +7388,50 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            // --- leg3
+            let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+            let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+            let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
             ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg2
             let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            output[1][17] = -minus_g1_vy_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             output[0][17] = -minus_g1_vx_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            output[2][17] = g1_wz_leg2;
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            output[0][37] = gq2_vx_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][37] = gq2_vy_leg2;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            output[2][37] = -minus_gq2_wz_leg2;
-            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            // --- leg1
+            let k1_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            output[0][16] = g1_vx_leg1;
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+            output[0][18] = g1_vx_leg3;
+            // --- leg4
+            let k1_leg4 = 1.0 / det_leg4;
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            output[0][19] = -minus_g1_vx_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
             ::overact::guard::platform(
@@ -7429,17 +7439,24 @@ impl DualV {
                 25.429161076750646,
                 ::overact::ActuatorGroup::All,
             )?;
-            let l_3_1 = s_1_3 / s_1_1;
-            let t1 = g1_vx_leg1 * actuator_velocities[0]
-                - minus_g1_vx_leg2 * actuator_velocities[1]
-                + g1_vx_leg3 * actuator_velocities[2]
-                - minus_g1_vx_leg4 * actuator_velocities[3];
-            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            output[1][17] = -minus_g1_vy_leg2;
+            let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            output[1][16] = g1_vy_leg1;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 / det_leg3;
+            output[1][18] = g1_vy_leg3;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            output[1][19] = -minus_g1_vy_leg4;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -7449,7 +7466,82 @@ impl DualV {
                 25.592368899353342,
                 ::overact::ActuatorGroup::All,
             )?;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            output[2][17] = g1_wz_leg2;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            output[2][16] = -minus_g1_wz_leg1;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            output[2][18] = g1_wz_leg3;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            output[2][19] = -minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 / s_1_1;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let l_3_2 = schur_2_3 / pivot_2;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+            output[1][38] = -minus_gq2_vy_leg3;
+            // --- leg1
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            output[0][48] = minus_g2_vx_leg1;
+            let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            output[1][48] = minus_g2_vy_leg1;
+            let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+            output[1][36] = -minus_gq2_vy_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
+            let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+            output[2][36] = gq2_wz_leg1;
+            let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+            output[2][48] = gq3_wz_leg1;
+            // --- leg2
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+            output[0][37] = gq2_vx_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+            output[1][37] = gq2_vy_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+            output[2][37] = -minus_gq2_wz_leg2;
+            let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+            let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+            output[0][38] = -minus_gq2_vx_leg3;
+            // --- leg4
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+            output[0][39] = gq2_vx_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+            output[1][39] = gq2_vy_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+            output[2][39] = gq2_wz_leg4;
+            let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
+            let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
+                + p_y_leg1 * minus_g2_vx_leg3;
+            let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+            output[2][38] = -minus_gq2_wz_leg3;
+            let t1 = g1_vx_leg1 * actuator_velocities[0]
+                - minus_g1_vx_leg2 * actuator_velocities[1]
+                + g1_vx_leg3 * actuator_velocities[2]
+                - minus_g1_vx_leg4 * actuator_velocities[3];
             let t2 = g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
                 + g1_vy_leg3 * actuator_velocities[2]
@@ -7459,14 +7551,6 @@ impl DualV {
                 + g1_wz_leg3 * actuator_velocities[2]
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
-            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3076928490286828,
-                ::overact::ActuatorGroup::All,
-            )?;
             let wz = t3 / pivot_3;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
@@ -7622,11 +7706,9 @@ impl DualV {
             output[1][43] = -(g2_vy_leg4 * qd_3_leg4);
             output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
             output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
-            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            output[2][43] = gq3_wz_leg4 * qd_3_leg4;
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -7734,29 +7816,28 @@ impl DualV {
             let minus_rate_dot_2_leg3 = (a_on_f2_leg3
                 + rate_2_squared_leg3 * t1_leg3) / det_leg3;
             output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            // --- leg4
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-            // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
             output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
-            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3;
+            // --- leg4
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
                 + g2_vx_leg4 * a2_x_leg4);
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3;
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][1] = -minus_mx_platform_on_vx;
             output[1][2] = -minus_mx_platform_on_vx;
@@ -7799,6 +7880,9 @@ impl DualV {
                 + g2_wz_leg4 * a2_x_leg4);
             output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
             output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
+            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[2][43] = gq3_wz_leg4 * qd_3_leg4;
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
             ::core::result::Result::Ok(())
         })
     }
@@ -7842,6 +7926,7 @@ impl DualV {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -7883,29 +7968,14 @@ impl DualV {
             let p_y_leg1 = R_P * c_phi;
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
-            let half_d_y_leg1 = 0.5 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let v_arm_x_leg3 = p_y_leg1 * twist[2];
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = rate_1_leg1;
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -7913,51 +7983,10 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
-                + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[1][9] = -minus_rate_1_leg2;
-            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
-            // --- leg1
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-                + minus_g2_vy_leg1 * v_end_y_leg1;
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
-                + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
-            let rate_dot_1_leg1 = k1_leg1
-                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-            output[0][4] = rate_dot_1_leg1;
-            // --- leg2
-            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
-            let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-            let minus_rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-            output[1][5] = -minus_rate_dot_1_leg2;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
@@ -7966,92 +7995,234 @@ impl DualV {
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg2
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][10] = rate_1_leg3;
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            // --- leg1
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let k1_leg1 = 1.0 / det_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
+            ::overact::guard::platform(
+                det_ja,
+                3.5376915986291904,
+                ::overact::ActuatorGroup::Kept,
+            )?;
             let half_per_det_ja = 0.5 / det_ja;
+            let wz_by_a3 = t1 * half_per_det_ja;
+            output[2][48] = wz_by_a3;
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
+            output[0][0] = wz_by_a1 * acceleration[2];
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
+            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+            output[2][0] = zz_platform_on_q1_leg3;
+            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
+            output[2][3] = R_P * wz_by_a3_a_x_platform;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
                 + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
                 * half_per_det_ja;
-            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
-                + p_y_leg1 * minus_g2_vx_leg1;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
                 * half_per_det_ja;
-            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg2;
-            let rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
-                + minus_g2_wz_leg2 * minus_wz_by_a2;
-            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
+            output[1][3] = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * acceleration[1];
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = rate_1_leg1;
+            let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+                + minus_g1_vy_leg2 * v_end_y_leg1;
+            output[1][9] = -minus_rate_1_leg2;
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
+            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][10] = rate_1_leg3;
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            output[2][1] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            // --- leg4
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let k1_leg4 = 1.0 / det_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            let t2 = minus_g1_vy_leg4 * vy_by_a3 + minus_g1_vx_leg4 * vx_by_a3;
+            let minus_g1_a3_leg4 = 2.0 * t2;
+            output[2][19] = -minus_g1_a3_leg4;
+            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+                + minus_g1_vy_leg4 * v_end_y_leg3;
+            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
+            output[2][15] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
+            let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][19] = g1_a1_leg4;
+            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][19] = g1_a2_leg4;
+            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
+            output[0][15] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][15] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
+            let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+            let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
+                + p_y_leg1 * minus_g2_vx_leg1;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
             output[1][36] = g2_a2_leg1;
-            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_wz_leg2 * wz_by_a1;
-            output[0][37] = g2_a1_leg2;
-            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
-            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
-            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
-            let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][48] = wz_by_a3;
-            output[0][0] = wz_by_a1 * acceleration[2];
-            output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
-            output[0][3] = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            output[1][3] = vx_by_a2 * acceleration[0]
-                - minus_vy_by_a2 * acceleration[1];
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            // --- leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+            output[0][36] = off_2_leg1_on_q1_leg1;
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][29] = g2_a1_leg2 * qd_2_leg2;
+            output[0][32] = -::overact::math::wide::signed(
+                off_2_leg1_on_q1_leg1,
+                minus_qd_2_leg1,
+            );
             output[1][32] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
-            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            output[2][40] = wz_by_a3 * qd_3_leg1;
+            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+            let rate_dot_1_leg1 = k1_leg1
+                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            output[0][4] = rate_dot_1_leg1;
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
+            // --- leg2
+            let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+            let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
+            let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg2;
+            let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+                + minus_g2_wz_leg2 * minus_wz_by_a2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+            let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_wz_leg2 * wz_by_a1;
+            output[0][37] = g2_a1_leg2;
+            let rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+            output[1][5] = -minus_rate_dot_1_leg2;
+            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
+            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
+            let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+            output[0][29] = g2_a1_leg2 * qd_2_leg2;
+            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1;
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
             output[1][48] = -minus_off_3_leg1_on_q1_leg2;
             output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
-            output[2][40] = wz_by_a3 * qd_3_leg1;
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
@@ -8060,49 +8231,15 @@ impl DualV {
                 qd_3_leg2,
             );
             output[2][41] = wz_by_a3 * qd_3_leg2;
-            output[1][44] = -::overact::math::wide::signed(
-                minus_off_3_leg1_on_q1_leg2,
-                qd_3_leg1,
-            );
-            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
-            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
-            let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
-            output[2][0] = zz_platform_on_q1_leg3;
-            let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
-            output[2][3] = R_P * wz_by_a3_a_x_platform;
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][1] = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            output[0][36] = off_2_leg1_on_q1_leg1;
-            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][32] = -::overact::math::wide::signed(
-                off_2_leg1_on_q1_leg1,
-                minus_qd_2_leg1,
-            );
-            let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            output[0][48] = off_3_leg1_on_q1_leg1;
-            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
             output[0][44] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
+            output[1][44] = -::overact::math::wide::signed(
+                minus_off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2;
             output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
@@ -8116,20 +8253,32 @@ impl DualV {
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
             );
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
+            // --- leg4
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg4;
+            let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            output[2][27] = -(7.142857142857143
+                * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4));
+            // --- leg3
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
@@ -8141,7 +8290,27 @@ impl DualV {
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
             output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+            let minus_rate_dot_1_leg4 = k1_leg4
+                * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
+            let g2_a3_leg4 = 2.0 * t3;
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
+            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
+            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3;
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
+            output[2][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            );
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
             output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
             output[2][34] = ::overact::math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
@@ -8154,6 +8323,13 @@ impl DualV {
                 wz_by_a3_minus_g2_a3_leg3,
                 qd_3_leg3,
             );
+            let qd_3_leg4 = twist[2] - rate_2_leg4;
+            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
+            output[2][47] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg4,
+                qd_3_leg4,
+            );
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
@@ -8163,10 +8339,30 @@ impl DualV {
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
             output[1][38] = g2_a2_leg3;
             output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            let g2_wz_leg4 = g1_wz_leg3 * g2_a3_leg4;
+            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+                + g2_wz_leg4 * wz_by_a1;
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
             output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
             output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
+            // --- leg4
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4;
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4;
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+            output[0][39] = off_2_leg4_on_q1_leg1;
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2;
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
             output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
@@ -8174,130 +8370,6 @@ impl DualV {
             output[1][34] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
-            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
-            output[0][46] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg3,
-                qd_3_leg3,
-            );
-            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
-            output[1][46] = -::overact::math::wide::signed(
-                g2_a2_minus_wz_by_a2_leg3,
-                qd_3_leg3,
-            );
-            // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            ::overact::guard::platform(
-                det_ja,
-                3.5376915986291904,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let t2 = minus_g1_vy_leg4 * vy_by_a3 + minus_g1_vx_leg4 * vx_by_a3;
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg4;
-            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-                + minus_g1_vy_leg4 * v_end_y_leg3;
-            let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-            let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            output[2][27] = -(7.142857142857143
-                * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4));
-            let minus_g1_a3_leg4 = 2.0 * t2;
-            output[2][19] = -minus_g1_a3_leg4;
-            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[2][15] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            );
-            let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-            let minus_rate_dot_1_leg4 = k1_leg4
-                * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            let g2_a3_leg4 = 2.0 * t3;
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
-            let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][19] = g1_a1_leg4;
-            let g2_wz_leg4 = g1_wz_leg3 * g2_a3_leg4;
-            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
-                + g2_wz_leg4 * wz_by_a1;
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a1_leg4 * a2_x_leg4;
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][19] = g1_a2_leg4;
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a2_leg4 * a2_x_leg4;
-            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
-            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
-            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
-            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
-            output[0][15] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            );
-            output[1][15] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            );
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
-            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1;
-            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
-            let qd_3_leg4 = twist[2] - rate_2_leg4;
-            let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
-            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
-            output[0][47] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg4,
-                qd_3_leg4,
-            );
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2;
-            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
-            let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
-            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
-            output[1][47] = -::overact::math::wide::signed(
-                g2_a2_minus_wz_by_a2_leg4,
-                qd_3_leg4,
-            );
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3;
-            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
-            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
-            output[2][47] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg4,
-                qd_3_leg4,
             );
             output[0][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
@@ -8307,9 +8379,29 @@ impl DualV {
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             );
-            output[2][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
+            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
+            output[0][46] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg3,
+            );
+            output[0][47] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg4,
+                qd_3_leg4,
+            );
+            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
+            output[1][46] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg3,
+                qd_3_leg3,
+            );
+            let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
+            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
+            output[1][47] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg4,
+                qd_3_leg4,
             );
             ::core::result::Result::Ok(())
         })
@@ -8361,6 +8453,12 @@ impl DualV {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, joints, twist, acceleration) = (
+                *pose,
+                *joints,
+                *twist,
+                *acceleration,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -8394,16 +8492,28 @@ impl DualV {
             output[2][32..34].fill(0.0);
             output[2][36..38].fill(0.0);
             // --- sines and cosines
-            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
-            (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
-                joints[9], joints[10],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s2_leg4, c2_leg4), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
+            (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[4], joints[7], joints[10], joints[3], joints[6], joints[0],
+                pose[2], joints[9],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let k1_leg2 = INV_L_AB / s2_leg2;
+            let g1_vx_leg2 = c12_leg2 * k1_leg2;
+            // --- leg3
+            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+            let k1_leg3 = INV_L_AB / s2_leg3;
+            let g1_vy_leg3 = s12_leg3 * k1_leg3;
+            let g1_vy_leg2 = s12_leg2 * k1_leg2;
+            let g1_vx_leg3 = c12_leg3 * k1_leg3;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -8412,61 +8522,6 @@ impl DualV {
             let p_x_leg3 = R_P * s_phi;
             let g1_vx_leg1 = c12_leg1 * k1_leg1;
             let p_y_leg1 = R_P * c_phi;
-            let v_arm_y_leg3 = p_x_leg3 * twist[2];
-            let v_arm_x_leg3 = p_y_leg1 * twist[2];
-            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
-            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
-            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = rate_1_leg1;
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
-            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
-            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
-            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
-            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
-            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
-                + minus_g2_vy_leg1 * v_end_y_leg1;
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
-                + s12_leg1 * a_end_y_leg1 + L_AB * rate_2_squared_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let v2_by_1_y_leg1 = L_AB * c2_leg1;
-            let rate_dot_1_leg1 = k1_leg1
-                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][4] = rate_dot_1_leg1;
-            // --- leg2
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let k1_leg2 = INV_L_AB / s2_leg2;
-            let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            output[1][9] = rate_1_leg2;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
-            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
-            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
-                + minus_g2_vy_leg2 * v_end_y_leg1;
-            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
-                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
-            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            let v2_by_1_y_leg2 = L_AB * c2_leg2;
-            let rate_dot_1_leg2 = k1_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][5] = rate_dot_1_leg2;
-            // --- leg3
-            let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-            let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-            let k1_leg3 = INV_L_AB / s2_leg3;
-            let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            let g1_vx_leg3 = c12_leg3 * k1_leg3;
-            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
-            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][10] = rate_1_leg3;
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
@@ -8480,91 +8535,24 @@ impl DualV {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
-            let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
-                * inv_det_ja;
+            let wz_by_a2 = t3 * inv_det_ja;
+            output[1][0] = wz_by_a2 * acceleration[2];
             let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
                 + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
             let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
                 * inv_det_ja;
-            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
-                + minus_g2_vx_leg1 * p_y_leg1;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
-            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-                + L_AB * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k1_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
-                + p_y_leg1 * minus_g2_vx_leg2;
-            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
-                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
-            output[0][37] = g2_a1_leg2;
-            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
-                + L_AB * rate_1_squared_leg2;
-            let minus_rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][21] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
-            let wz_by_a2 = t3 * inv_det_ja;
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1];
             let minus_vx_by_a2 = t2 * inv_det_ja;
             let vy_by_a2 = t1 * inv_det_ja;
-            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
-                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            output[1][36] = g2_a2_leg1;
-            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[1][3] = vy_by_a2 * acceleration[1]
+                - minus_vx_by_a2 * acceleration[0];
+            let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
+                * inv_det_ja;
+            output[0][0] = wz_by_a1 * acceleration[2];
             let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
                 * inv_det_ja;
             output[2][48] = -minus_wz_by_a3;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
-            output[1][21] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
-            output[0][24] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
-            output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
-            output[1][25] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
-            output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
-            output[0][0] = wz_by_a1 * acceleration[2];
-            output[1][0] = wz_by_a2 * acceleration[2];
-            output[0][3] = vx_by_a1 * acceleration[0]
-                - minus_vy_by_a1 * acceleration[1];
-            output[1][3] = vy_by_a2 * acceleration[1]
-                - minus_vx_by_a2 * acceleration[0];
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2);
-            output[1][32] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            );
-            output[0][33] = -::overact::math::wide::signed(
-                g2_a1_leg2,
-                minus_qd_2_leg2,
-            );
-            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
-            output[1][48] = off_3_leg1_on_q1_leg2;
-            output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
-            output[2][40] = -(minus_wz_by_a3 * qd_3_leg1);
-            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
-            output[0][45] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg2,
-                qd_3_leg2,
-            );
-            output[2][41] = -(minus_wz_by_a3 * qd_3_leg2);
-            output[1][44] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg2,
-                qd_3_leg1,
-            );
-            output[2][44] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg1,
-            );
-            output[2][45] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg2,
-            );
             let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
             output[2][0] = -minus_zz_platform_on_q1_leg3;
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -8572,7 +8560,24 @@ impl DualV {
             output[2][2] = R_P * minus_zz_platform_on_q1_leg3
                 + minus_wz_by_a3_a_x_platform;
             output[2][3] = -(R_P * minus_wz_by_a3_a_x_platform);
+            let v_arm_y_leg3 = p_x_leg3 * twist[2];
+            let v_arm_x_leg3 = p_y_leg1 * twist[2];
+            let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+            let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+            let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            output[0][8] = rate_1_leg1;
+            let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            output[1][9] = rate_1_leg2;
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+            let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[2][10] = rate_1_leg3;
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
             output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
@@ -8588,6 +8593,100 @@ impl DualV {
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
             output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
                 + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform);
+            let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+            let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+            let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
+                + minus_g2_vx_leg1 * p_y_leg1;
+            let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
+                - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
+            output[1][36] = g2_a2_leg1;
+            let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+            let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+                + minus_g2_vy_leg1 * v_end_y_leg1;
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1
+                + s12_leg1 * a_end_y_leg1 + L_AB * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
+            let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+                + L_AB * rate_1_squared_leg1;
+            output[0][24] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
+            let v2_by_1_y_leg1 = L_AB * c2_leg1;
+            let rate_dot_1_leg1 = k1_leg1
+                * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][4] = rate_dot_1_leg1;
+            let minus_rate_dot_2_leg1 = k1_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
+            output[1][32] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+            let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
+            output[1][48] = off_3_leg1_on_q1_leg2;
+            output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
+            output[2][40] = -(minus_wz_by_a3 * qd_3_leg1);
+            output[1][44] = ::overact::math::wide::signed(
+                off_3_leg1_on_q1_leg2,
+                qd_3_leg1,
+            );
+            output[2][44] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg1,
+            );
+            // --- leg2
+            let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+            let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+            let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+                + minus_g2_vy_leg2 * v_end_y_leg1;
+            let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+            let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
+                + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
+            let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
+                + p_y_leg1 * minus_g2_vx_leg2;
+            let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+                + L_AB * rate_1_squared_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
+            output[1][25] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
+            let v2_by_1_y_leg2 = L_AB * c2_leg2;
+            let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
+                - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
+            output[0][37] = g2_a1_leg2;
+            let minus_rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][21] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
+            let rate_dot_1_leg2 = k1_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][5] = rate_dot_1_leg2;
+            output[1][21] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
+            let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+            output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2);
+            output[0][33] = -::overact::math::wide::signed(
+                g2_a1_leg2,
+                minus_qd_2_leg2,
+            );
+            let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+            let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
+            output[0][45] = ::overact::math::wide::signed(
+                wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg2,
+            );
+            output[2][41] = -(minus_wz_by_a3 * qd_3_leg2);
+            output[2][45] = -::overact::math::wide::signed(
+                minus_wz_by_a3,
+                qd_3_leg2,
+            );
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][36] = off_2_leg1_on_q1_leg1;
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
@@ -8615,6 +8714,7 @@ impl DualV {
                 wz_by_a2_minus_g2_a2_leg2,
                 qd_3_leg2,
             );
+            // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
@@ -8837,6 +8937,11 @@ impl DualV {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -8875,31 +8980,56 @@ impl DualV {
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let p_y_leg1 = R_P * c_phi;
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+            let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
             // --- leg2
+            let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            // --- leg4
+            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            let det_leg4 = rho_squared_leg4 * h_leg4;
+            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg2
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let k1_leg2 = 1.0 / det_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -8910,22 +9040,8 @@ impl DualV {
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg1
-            let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
-            let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -8935,9 +9051,86 @@ impl DualV {
             let t2 = p_y_leg1 * t1;
             let t3 = p_x_leg3 * t1;
             let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
+            ::overact::guard::platform(
+                det_ja,
+                3.5376915986291904,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            // --- leg4
+            let k1_leg4 = 1.0 / det_leg4;
+            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+            ::overact::guard::platform(
+                s_1_1,
+                25.429161076750646,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+            let inv_pivot_1 = 1.0 / s_1_1;
+            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+            let l_2_1 = s_1_2 * inv_pivot_1;
+            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+            ::overact::guard::platform(
+                pivot_2,
+                25.592368899353342,
+                ::overact::ActuatorGroup::All,
+            )?;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 * inv_pivot_1;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+            let inv_pivot_2 = 1.0 / pivot_2;
+            let l_3_2 = schur_2_3 * inv_pivot_2;
+            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+            ::overact::guard::platform(
+                pivot_3,
+                0.3076928490286828,
+                ::overact::ActuatorGroup::All,
+            )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][48] = wz_by_a3;
+            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+            output[2][19] = -minus_g1_a3_leg4;
+            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
+                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
+            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
+                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+                * half_per_det_ja;
+            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
+                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
+            output[0][19] = g1_a1_leg4;
+            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+                * half_per_det_ja;
+            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
+                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
+            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+                * half_per_det_ja;
+            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
+                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
+            output[1][19] = g1_a2_leg4;
             let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let vy_by_a3 = t3 * half_per_det_ja;
@@ -8946,26 +9139,10 @@ impl DualV {
                 * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][38] = -minus_off_2_leg3_on_q1_leg3;
-            let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
-                - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
-                + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
-                * half_per_det_ja;
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
             output[0][38] = g2_a1_leg3;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                * half_per_det_ja;
-            let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
-                + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
-            let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
-                * half_per_det_ja;
             let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
             output[1][38] = g2_a2_leg3;
@@ -8994,90 +9171,6 @@ impl DualV {
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2;
-            // --- leg4
-            let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-            let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-            let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-            let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-            ::overact::guard::platform(
-                det_ja,
-                3.5376915986291904,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-            let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-            let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
-            let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
-                - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][19] = g1_a1_leg4;
-            let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
-                - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][19] = g1_a2_leg4;
-            let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
-            let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            output[2][19] = -minus_g1_a3_leg4;
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
-                + g2_wz_leg4 * wz_by_a1;
-            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1;
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2;
-            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3;
-            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-            let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-                + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let inv_pivot_1 = 1.0 / s_1_1;
-            let l_3_1 = s_1_3 * inv_pivot_1;
-            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-            let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-                + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-            let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-                + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-            let l_2_1 = s_1_2 * inv_pivot_1;
-            let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.592368899353342,
-                ::overact::ActuatorGroup::All,
-            )?;
-            let inv_pivot_2 = 1.0 / pivot_2;
-            let l_3_2 = schur_2_3 * inv_pivot_2;
-            let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3076928490286828,
-                ::overact::ActuatorGroup::All,
-            )?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t4 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -9153,6 +9246,8 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
@@ -9189,8 +9284,10 @@ impl DualV {
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
+            let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
             output[2][27] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
@@ -9245,7 +9342,8 @@ impl DualV {
             output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
             output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
@@ -9256,8 +9354,6 @@ impl DualV {
             output[2][0] = zz_platform_on_q1_leg3;
             output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
             output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
             output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
@@ -9266,15 +9362,19 @@ impl DualV {
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
             output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
             output[2][3] = R_P * wz_by_a3_a_x_platform;
+            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+                + g2_wz_leg4 * wz_by_a1;
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
             output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
             output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
             output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
             output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
             output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[2][15] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            );
             output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
             output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
             output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
@@ -9282,22 +9382,24 @@ impl DualV {
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
+            output[1][15] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            );
+            output[2][15] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            );
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
+            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
             output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
-            output[1][15] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            );
-            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
-            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
-            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
-            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
-            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
-            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
             output[0][32] = -::overact::math::wide::signed(
@@ -9325,22 +9427,17 @@ impl DualV {
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
+            // --- leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+            output[0][39] = off_2_leg4_on_q1_leg1;
             output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
-            output[0][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            );
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2;
             output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
-            output[1][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            );
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3;
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
-            output[2][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            );
             output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
@@ -9348,6 +9445,18 @@ impl DualV {
             output[1][34] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
+            );
+            output[0][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            );
+            output[1][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            );
+            output[2][35] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
@@ -9614,6 +9723,11 @@ impl DualV {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// 1 / r_p
             const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
             /// l_ab²
@@ -9630,7 +9744,6 @@ impl DualV {
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
-            let half_d_y_leg1 = 0.5 * d_y_leg1;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -9639,16 +9752,8 @@ impl DualV {
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-            let k1_leg1 = 1.0 / det_leg1;
-            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -9656,20 +9761,10 @@ impl DualV {
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-            let k1_leg2 = 1.0 / det_leg2;
-            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
-                + p_y_leg1 * minus_g1_vx_leg2;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-            let half_d_y_leg3 = 0.5 * d_y_leg3;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
@@ -9678,16 +9773,8 @@ impl DualV {
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-            let k1_leg3 = 1.0 / det_leg3;
-            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -9695,22 +9782,28 @@ impl DualV {
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
             ::overact::guard::reach(h_squared_leg4, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
-            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            // --- leg1
+            let k1_leg1 = 1.0 / det_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+            // --- leg2
+            let k1_leg2 = 1.0 / det_leg2;
+            let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+            let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+            let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+            // --- leg3
+            let k1_leg3 = 1.0 / det_leg3;
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+            // --- leg4
             let k1_leg4 = 1.0 / det_leg4;
-            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
-                + p_y_leg1 * minus_g1_vx_leg4;
-            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
             ::overact::guard::platform(
@@ -9718,14 +9811,25 @@ impl DualV {
                 25.429161076750646,
                 ::overact::ActuatorGroup::All,
             )?;
+            // --- leg1
+            let half_d_y_leg1 = 0.5 * d_y_leg1;
+            let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+            let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+            let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+            let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+            let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+            // --- leg3
+            let half_d_y_leg3 = 0.5 * d_y_leg3;
+            let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+            let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+            let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+            let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let inv_pivot_1 = 1.0 / s_1_1;
-            let l_3_1 = s_1_3 * inv_pivot_1;
-            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
@@ -9735,6 +9839,22 @@ impl DualV {
                 25.592368899353342,
                 ::overact::ActuatorGroup::All,
             )?;
+            let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+            let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
+                + p_y_leg1 * minus_g1_vx_leg2;
+            let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+            let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
+                + p_y_leg1 * minus_g1_vx_leg4;
+            let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+                + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+            let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+                - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+                + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+            let l_3_1 = s_1_3 * inv_pivot_1;
+            let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+                - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+                + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+            let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -9917,26 +10037,40 @@ impl DualV {
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         // --- leg3
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_x_leg3 = pose[0] + p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -9946,21 +10080,7 @@ impl DualV {
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         // --- leg1
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
-        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;

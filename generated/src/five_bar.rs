@@ -1162,6 +1162,7 @@ impl FiveBar {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -1177,9 +1178,6 @@ impl FiveBar {
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
             output[0][24] = acceleration[0];
-            // --- platform
-            let m_platform_on_vy = acceleration[1] + 9.81;
-            output[1][24] = m_platform_on_vy;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -1189,9 +1187,23 @@ impl FiveBar {
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let m_platform_on_vy = acceleration[1] + 9.81;
+            output[1][24] = m_platform_on_vy;
+            // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let k_left = 1.0 / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
@@ -1221,37 +1233,37 @@ impl FiveBar {
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-            let qd_2_left = minus_rate_1_left + rate_2_left;
-            let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
-            output[0][11] = d_x_left * t2_left;
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let a_on_f1_left = l2_x_left * acceleration[0]
                 + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-            let t3_left = rho_squared_left - 0.1025;
-            let t4_left = 0.5 * t3_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
             let minus_rate_dot_1_left = k_left
-                * (a_on_f1_left + rate_1_squared_left * t4_left);
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
             let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
                 - L_1 * minus_rate_dot_1_left;
             let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-            let c2_left = INV_HALF * t3_left;
+            let c2_left = INV_HALF * t2_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
             output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
                 + g2_vx_left * a2_x_left);
             let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t4_left);
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
             output[0][7] = zz_2_left_on_vx;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            output[0][11] = d_x_left * t4_left;
             output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
                 + g2_vy_left * a2_x_left);
             let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
             output[1][7] = zz_2_left_on_vy;
-            output[1][11] = pose[1] * t2_left;
+            output[1][11] = pose[1] * t4_left;
             let t5_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let minus_m_2_left_on_vy = minus_g1_vy_left * t5_left;
@@ -1274,17 +1286,7 @@ impl FiveBar {
                     * (1.5625 * zz_2_left_on_vx
                         - INV_L_1_SQUARED * minus_m_2_left_on_vx);
             // --- right
-            let d_x_right = pose[0] - HALF;
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            let t1_right = 0.5 - 0.01125 / rho_squared_right;
-            let h_squared_right = L_1_SQUARED / rho_squared_right
-                - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
@@ -1308,31 +1310,31 @@ impl FiveBar {
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
-            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let t2_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
-            output[0][23] = d_x_right * t2_right;
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
-            let t3_right = rho_squared_right - 0.1025;
-            let t4_right = 0.5 * t3_right;
+            let t2_right = rho_squared_right - 0.1025;
+            let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
-                * (a_on_f1_right + rate_1_squared_right * t4_right);
+                * (a_on_f1_right + rate_1_squared_right * t3_right);
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
             let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
             let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-            let c2_right = INV_HALF * t3_right;
+            let c2_right = INV_HALF * t2_right;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
             output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right
                 + minus_g2_vx_right * a2_x_right;
             let minus_rate_dot_2_right = k_right
-                * (minus_a_on_f2_right + rate_2_squared_right * t4_right);
+                * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
             output[0][19] = zz_2_right_on_vx;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+            let t4_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
+            output[0][23] = d_x_right * t4_right;
             output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right
                 + minus_g2_vy_right * a2_x_right;
             let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
@@ -1350,7 +1352,7 @@ impl FiveBar {
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         + 1.5625 * zz_2_right_on_vy);
-            output[1][23] = pose[1] * t2_right;
+            output[1][23] = pose[1] * t4_right;
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
             output[0][15] = zz_1_right_on_vx;
@@ -1407,6 +1409,7 @@ impl FiveBar {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
             /// 1 / l_1²
@@ -1421,9 +1424,9 @@ impl FiveBar {
             const L_2: ::core::primitive::f64 = 0.25;
             output[0][24] = acceleration[0];
             // --- sines and cosines
-            let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], joints[2], joints[3],
+            let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
+            (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[0], joints[2],
             ]);
             ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
             ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
@@ -1436,13 +1439,13 @@ impl FiveBar {
             output[0][6] = g1_vx_left;
             let a1_y_left = 9.81 * c1_left;
             output[0][1] = g1_vx_left * a1_y_left;
-            let a1_x_left = 9.81 * s1_left;
-            output[0][2] = -(g1_vx_left * a1_x_left);
             let s12_left = s1_left * c2_left + c1_left * s2_left;
             let g1_vy_left = s12_left * k1_left;
             output[1][6] = g1_vy_left;
-            output[1][2] = -(g1_vy_left * a1_x_left);
             output[1][1] = g1_vy_left * a1_y_left;
+            let a1_x_left = 9.81 * s1_left;
+            output[0][2] = -(g1_vx_left * a1_x_left);
+            output[1][2] = -(g1_vy_left * a1_x_left);
             let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
             output[0][4] = g1_vx_left * rate_1_left;
             output[1][4] = g1_vy_left * rate_1_left;
@@ -1512,13 +1515,13 @@ impl FiveBar {
             output[0][18] = g1_vx_right;
             let a1_y_right = 9.81 * c1_right;
             output[0][13] = g1_vx_right * a1_y_right;
-            let a1_x_right = 9.81 * s1_right;
-            output[0][14] = -(g1_vx_right * a1_x_right);
             let s12_right = s1_right * c2_right + c1_right * s2_right;
             let g1_vy_right = s12_right * k1_right;
             output[1][18] = g1_vy_right;
-            output[1][14] = -(g1_vy_right * a1_x_right);
             output[1][13] = g1_vy_right * a1_y_right;
+            let a1_x_right = 9.81 * s1_right;
+            output[0][14] = -(g1_vx_right * a1_x_right);
+            output[1][14] = -(g1_vy_right * a1_x_right);
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             output[0][16] = g1_vx_right * rate_1_right;
             output[1][16] = g1_vy_right * rate_1_right;
@@ -1632,6 +1635,11 @@ impl FiveBar {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_1²
@@ -1653,46 +1661,8 @@ impl FiveBar {
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            let k_left = 1.0 / det_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let l2_y_left = pose[1] - l1_y_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][6] = -minus_g1_vy_left;
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            output[1][1] = -(minus_g1_vy_left * bias_a1_y_left);
-            output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]);
-            output[1][5] = -::overact::math::wide::signed(
-                minus_g1_vy_left,
-                actuator_velocities[0],
-            );
-            let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
-            output[1][0] = -minus_zz_1_left_on_vy;
-            output[1][3] = -minus_zz_1_left_on_vy;
-            let l2_x_left = d_x_left - l1_x_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][6] = -minus_g1_vx_left;
-            output[0][1] = -(minus_g1_vx_left * bias_a1_y_left);
-            output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]);
-            output[0][5] = -::overact::math::wide::signed(
-                minus_g1_vx_left,
-                actuator_velocities[0],
-            );
-            let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
-            output[0][0] = -minus_zz_1_left_on_vx;
-            output[0][3] = -minus_zz_1_left_on_vx;
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = minus_g1_vx_left * bias_a1_x_left;
-            output[1][2] = minus_g1_vy_left * bias_a1_x_left;
-            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-                + L_1 * actuator_accelerations[0];
-            let t2_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
-            let minus_m_2_left_on_vx = minus_g1_vx_left * t2_left;
-            output[0][10] = -minus_m_2_left_on_vx;
-            let minus_m_2_left_on_vy = minus_g1_vy_left * t2_left;
-            output[1][10] = -minus_m_2_left_on_vy;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1702,39 +1672,89 @@ impl FiveBar {
                 - t1_right * t1_right;
             ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][6] = -minus_g1_vx_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            output[1][6] = -minus_g1_vy_left;
+            // --- right
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             output[1][18] = g1_vy_right;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = g1_vy_right * bias_a1_y_right;
-            output[1][16] = g1_vy_right * actuator_velocities[1];
-            output[1][17] = ::overact::math::wide::signed(
-                g1_vy_right,
-                actuator_velocities[1],
-            );
-            let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
-            output[1][12] = zz_1_right_on_vy;
-            output[1][15] = zz_1_right_on_vy;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             output[0][18] = g1_vx_right;
-            output[0][13] = g1_vx_right * bias_a1_y_right;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]);
+            output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]);
+            output[0][5] = -::overact::math::wide::signed(
+                minus_g1_vx_left,
+                actuator_velocities[0],
+            );
+            output[1][5] = -::overact::math::wide::signed(
+                minus_g1_vy_left,
+                actuator_velocities[0],
+            );
             output[0][16] = g1_vx_right * actuator_velocities[1];
+            output[1][16] = g1_vy_right * actuator_velocities[1];
             output[0][17] = ::overact::math::wide::signed(
                 g1_vx_right,
                 actuator_velocities[1],
             );
+            output[1][17] = ::overact::math::wide::signed(
+                g1_vy_right,
+                actuator_velocities[1],
+            );
+            // --- left
+            let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
+            output[0][0] = -minus_zz_1_left_on_vx;
+            output[0][3] = -minus_zz_1_left_on_vx;
+            let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
+            output[1][0] = -minus_zz_1_left_on_vy;
+            output[1][3] = -minus_zz_1_left_on_vy;
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][1] = -(minus_g1_vx_left * bias_a1_y_left);
+            output[1][1] = -(minus_g1_vy_left * bias_a1_y_left);
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][2] = minus_g1_vx_left * bias_a1_x_left;
+            output[1][2] = minus_g1_vy_left * bias_a1_x_left;
+            // --- right
             let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
             output[0][12] = zz_1_right_on_vx;
             output[0][15] = zz_1_right_on_vx;
+            let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
+            output[1][12] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[0][13] = g1_vx_right * bias_a1_y_right;
+            output[1][13] = g1_vy_right * bias_a1_y_right;
             let bias_a1_x_right = 49.05 * l1_y_right;
             output[0][14] = -(g1_vx_right * bias_a1_x_right);
             output[1][14] = -(g1_vy_right * bias_a1_x_right);
+            // --- left
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            let t2_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+            let minus_m_2_left_on_vx = minus_g1_vx_left * t2_left;
+            output[0][10] = -minus_m_2_left_on_vx;
+            let minus_m_2_left_on_vy = minus_g1_vy_left * t2_left;
+            output[1][10] = -minus_m_2_left_on_vy;
+            // --- right
             let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
                 + L_1 * actuator_accelerations[1];
             let t2_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
@@ -1743,12 +1763,6 @@ impl FiveBar {
             let m_2_right_on_vy = g1_vy_right * t2_right;
             output[1][22] = m_2_right_on_vy;
             let g2_vx_left = l1_x_left * k_left;
-            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
             let t2 = 1.0 / t1;
             let g2_vy_left = l1_y_left * k_left;
             let vy = t2
@@ -1757,19 +1771,12 @@ impl FiveBar {
             let minus_vx = t2
                 * (g1_vy_right * actuator_velocities[0]
                     + minus_g1_vy_left * actuator_velocities[1]);
+            // --- left
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let qd_2_left = rate_2_left - actuator_velocities[0];
             let t3_left = ::overact::math::wide::sign(qd_2_left) / det_left;
             output[0][11] = d_x_left * t3_left;
             output[1][11] = pose[1] * t3_left;
-            let minus_g2_vx_right = l1_x_right * k_right;
-            let minus_g2_vy_right = l1_y_right * k_right;
-            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-            let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            output[0][23] = -(d_x_right * t3_right);
-            output[1][23] = -(pose[1] * t3_right);
-            // --- left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
@@ -1780,13 +1787,16 @@ impl FiveBar {
             let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_left;
             // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
-            let t4_right = 0.5 * (rho_squared_right - 0.1025);
+            let t3_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
-                * (bias_a_on_f1_right + rate_1_squared_right * t4_right);
+                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
             let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
                 - bias_rate_dot_1_right;
             let minus_dvx = t2
@@ -1817,7 +1827,7 @@ impl FiveBar {
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
-            let c2_right = t4_right * 20.0;
+            let c2_right = t3_right * 20.0;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
@@ -1826,11 +1836,14 @@ impl FiveBar {
             output[0][21] = minus_g2_vx_right * a2_x_right
                 - g1_vx_right * inv_l_2_a_on_f2_right;
             let rate_dot_2_right = k_right
-                * (a_on_f2_right - rate_2_squared_right * t4_right);
+                * (a_on_f2_right - rate_2_squared_right * t3_right);
             let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
             output[0][19] = -minus_zz_2_right_on_vx;
             output[1][21] = minus_g2_vy_right * a2_x_right
                 - g1_vy_right * inv_l_2_a_on_f2_right;
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            output[0][23] = -(d_x_right * t4_right);
             let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
             output[1][7] = -minus_zz_2_left_on_vy;
             let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
@@ -1854,6 +1867,7 @@ impl FiveBar {
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         - 1.5625 * minus_zz_2_right_on_vy);
+            output[1][23] = -(pose[1] * t4_right);
             ::core::result::Result::Ok(())
         })
     }
@@ -1897,6 +1911,7 @@ impl FiveBar {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -1930,23 +1945,58 @@ impl FiveBar {
                 - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let a1_y_left = 49.05 * l1_x_left;
-            output[0][1] = a1_y_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = -a1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let inv_rho_squared_right = 1.0 / rho_squared_right;
+            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
+            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            // --- left
             let k_left = 1.0 / det_left;
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vx_left = l2_x_left * k_left;
             let minus_g1_vy_left = l2_y_left * k_left;
+            // --- right
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
+            let k_right = 1.0 / det_right;
+            let g1_vx_right = l2_x_right * k_right;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
+            let g1_vy_right = l2_y_right * k_right;
+            let det_ja = minus_g1_vx_left * g1_vy_right
+                - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                det_ja,
+                22.615508735629323,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[0][1] = a1_y_left;
+            let a1_x_left = 49.05 * l1_y_left;
+            output[0][2] = -a1_x_left;
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
             output[0][4] = -minus_rate_1_left;
             output[0][5] = -::overact::math::wide::sign(minus_rate_1_left);
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = a1_y_right;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][14] = -a1_x_right;
+            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+            output[1][16] = rate_1_right;
+            // --- left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -1960,46 +2010,14 @@ impl FiveBar {
                 * (a_on_f1_left + rate_1_squared_left * t3_left);
             output[0][0] = -minus_rate_dot_1_left;
             output[0][3] = -minus_rate_dot_1_left;
-            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
-                - L_1 * minus_rate_dot_1_left;
-            output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left;
-            // --- right
-            let d_x_right = pose[0] - HALF;
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            let inv_rho_squared_right = 1.0 / rho_squared_right;
-            let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
-            let h_squared_right = L_1_SQUARED * inv_rho_squared_right
-                - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = a1_y_right;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let a1_x_right = 49.05 * l1_y_right;
-            output[1][14] = -a1_x_right;
-            let l2_x_right = d_x_right - l1_x_right;
-            let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-            let k_right = 1.0 / det_right;
-            let g1_vx_right = l2_x_right * k_right;
-            let l2_y_right = pose[1] - l1_y_right;
-            let g1_vy_right = l2_y_right * k_right;
-            let det_ja = minus_g1_vx_left * g1_vy_right
-                - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                det_ja,
-                22.615508735629323,
-                ::overact::ActuatorGroup::Kept,
-            )?;
             let inv_det_ja = 1.0 / det_ja;
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
             let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-            // --- left
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let a1_y_plus_l_1_rate_dot_1_left = a1_y_left
+                - L_1 * minus_rate_dot_1_left;
             let c2_left = INV_HALF * t2_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
@@ -2014,6 +2032,11 @@ impl FiveBar {
                 g2_a1_left - 1.0,
                 qd_2_left,
             );
+            let g2_a2_left = k_left * inv_det_ja;
+            output[1][9] = -(g2_a2_left * a2_x_left);
+            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+            output[1][7] = zz_2_left_on_q1_right;
             let t1_platform = acceleration[1] + 9.81;
             let m_platform_on_q1_left = vy_by_a1 * t1_platform
                 - minus_vx_by_a1 * acceleration[0];
@@ -2023,13 +2046,7 @@ impl FiveBar {
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
                         + 1.5625 * zz_2_left_on_q1_left);
-            let g2_a2_left = k_left * inv_det_ja;
-            output[1][9] = -(g2_a2_left * a2_x_left);
-            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
-            let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
-            output[1][7] = zz_2_left_on_q1_right;
-            let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[1][16] = rate_1_right;
+            output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
             let m_platform_on_q1_right = vy_by_a2 * t1_platform
@@ -2038,7 +2055,6 @@ impl FiveBar {
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
             output[1][8] = inv_l_2_m_platform_on_q1_right
                 - L_2 * zz_2_left_on_q1_right;
-            output[1][17] = ::overact::math::wide::sign(rate_1_right);
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
@@ -2077,17 +2093,18 @@ impl FiveBar {
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
                         - 1.5625 * minus_zz_2_right_on_q1_right);
-            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[1][23] = -::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                minus_qd_2_right,
-            );
             output[0][21] = -(g2_a1_right * a2_x_right);
+            output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             output[0][23] = -::overact::math::wide::signed(
                 g2_a1_right,
                 minus_qd_2_right,
             );
-            output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            output[1][23] = -::overact::math::wide::signed(
+                g2_a2_right - 1.0,
+                minus_qd_2_right,
+            );
+            output[1][17] = ::overact::math::wide::sign(rate_1_right);
             ::core::result::Result::Ok(())
         })
     }
@@ -2138,6 +2155,7 @@ impl FiveBar {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
             /// 1 / l_2
@@ -2155,45 +2173,14 @@ impl FiveBar {
             output[1][10] = 0.0;
             output[1][18] = 1.0;
             // --- sines and cosines
-            let [(s1_left, c1_left), (s1_right, c1_right), (s2_left, c2_left),
-            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[2], joints[1], joints[3],
+            let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
+            (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[0], joints[2],
             ]);
             ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
             ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-            let a1_y_left = 9.81 * c1_left;
-            output[0][1] = a1_y_left;
-            let a1_x_left = 9.81 * s1_left;
-            output[0][2] = -a1_x_left;
-            let a1_y_right = 9.81 * c1_right;
-            output[1][13] = a1_y_right;
-            let a1_x_right = 9.81 * s1_right;
-            output[1][14] = -a1_x_right;
-            // --- left
             let inv_s2_left = 1.0 / s2_left;
             let fk1_x_left = c2_left * inv_s2_left;
-            let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
-            let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
-            let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
-            output[0][5] = ::overact::math::wide::sign(t2_left);
-            let rate_1_left = INV_L_1 * t2_left;
-            output[0][4] = rate_1_left;
-            let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
-                + s1_left * acceleration[1];
-            let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
-                + c1_left * acceleration[1] - s1_left * acceleration[0];
-            let t3_left = t2_left * rate_1_left;
-            let k2_left = INV_L_2 * inv_s2_left;
-            let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
-            let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-            let t4_left = a_on_f1_left + fk1_x_left * t3_left
-                + rate_2_squared_left * (L_2 * inv_s2_left);
-            let t5_left = a1_y_left + t4_left;
-            output[0][10] = L_1 * t5_left;
-            let rate_dot_1_left = INV_L_1 * t4_left;
-            output[0][0] = rate_dot_1_left;
-            output[0][3] = rate_dot_1_left;
-            let minus_g2_vx_left = c1_left * k2_left;
             let inv_s2_right = 1.0 / s2_right;
             let fk1_x_right = c2_right * inv_s2_right;
             let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
@@ -2207,6 +2194,31 @@ impl FiveBar {
                 0.9046203494251691,
                 ::overact::ActuatorGroup::Kept,
             )?;
+            let a1_y_left = 9.81 * c1_left;
+            output[0][1] = a1_y_left;
+            let a1_x_left = 9.81 * s1_left;
+            output[0][2] = -a1_x_left;
+            let a1_y_right = 9.81 * c1_right;
+            output[1][13] = a1_y_right;
+            let a1_x_right = 9.81 * s1_right;
+            output[1][14] = -a1_x_right;
+            // --- left
+            let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+                + s1_left * acceleration[1];
+            let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+                + c1_left * acceleration[1] - s1_left * acceleration[0];
+            let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+            let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+            let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+            let rate_1_left = INV_L_1 * t2_left;
+            output[0][4] = rate_1_left;
+            let t3_left = t2_left * rate_1_left;
+            let k2_left = INV_L_2 * inv_s2_left;
+            let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
+            let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+            let t4_left = a_on_f1_left + fk1_x_left * t3_left
+                + rate_2_squared_left * (L_2 * inv_s2_left);
+            let minus_g2_vx_left = c1_left * k2_left;
             let l_1_per_det_ja = L_1 / det_ja;
             let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
             let minus_g2_vy_left = s1_left * k2_left;
@@ -2214,8 +2226,13 @@ impl FiveBar {
             let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1
                 - minus_g2_vy_left * vy_by_a1;
             let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
+            let t5_left = a1_y_left + t4_left;
             let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
             output[0][9] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
+            output[0][5] = ::overact::math::wide::sign(t2_left);
+            let rate_dot_1_left = INV_L_1 * t4_left;
+            output[0][0] = rate_dot_1_left;
+            output[0][3] = rate_dot_1_left;
             let minus_rate_dot_2_left = k2_left
                 * (a_on_f2_left + t1_left * minus_rate_2_left);
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
@@ -2225,13 +2242,6 @@ impl FiveBar {
                 g2_a1_left - 1.0,
                 minus_qd_2_left,
             );
-            let t1_platform = acceleration[1] + 9.81;
-            let m_platform_on_q1_left = vy_by_a1 * t1_platform
-                - minus_vx_by_a1 * acceleration[0];
-            output[0][24] = m_platform_on_q1_left;
-            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left
-                - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left);
             let minus_g2_a2_left = k2_left * l_1_per_det_ja;
             output[1][9] = minus_g2_a2_left * a2_x_left;
             output[1][11] = ::overact::math::wide::signed(
@@ -2240,6 +2250,14 @@ impl FiveBar {
             );
             let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
             output[1][7] = zz_2_left_on_q1_right;
+            let t1_platform = acceleration[1] + 9.81;
+            let m_platform_on_q1_left = vy_by_a1 * t1_platform
+                - minus_vx_by_a1 * acceleration[0];
+            output[0][24] = m_platform_on_q1_left;
+            let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+            output[0][8] = inv_l_2_m_platform_on_q1_left
+                - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left);
+            output[0][10] = L_1 * t5_left;
             let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
             let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
             let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
@@ -2351,6 +2369,11 @@ impl FiveBar {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -2379,8 +2402,6 @@ impl FiveBar {
             output[1][15] = actuator_accelerations[1];
             output[1][16] = actuator_velocities[1];
             output[1][18] = 1.0;
-            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]);
-            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]);
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2392,44 +2413,30 @@ impl FiveBar {
                 - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][1] = bias_a1_y_left;
-            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-                + L_1 * actuator_accelerations[0];
-            output[0][10] = L_1 * bias_a1_y_plus_l_1_qdd1_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = -bias_a1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = bias_a1_y_right;
-            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-                + L_1 * actuator_accelerations[1];
-            output[1][22] = L_1 * bias_a1_y_plus_l_1_qdd1_right;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let bias_a1_x_right = 49.05 * l1_y_right;
-            output[1][14] = -bias_a1_x_right;
-            let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
             ::overact::guard::reach(h_squared_right, "right")?;
-            let k_left = 1.0 / det_left;
-            let l2_x_right = d_x_right - l1_x_right;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let k_left = 1.0 / det_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -2446,6 +2453,15 @@ impl FiveBar {
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
+            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]);
+            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]);
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][1] = bias_a1_y_left;
+            let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+                + L_1 * actuator_accelerations[0];
+            output[0][10] = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][2] = -bias_a1_x_left;
             let inv_det_ja = 1.0 / det_ja;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
@@ -2456,6 +2472,13 @@ impl FiveBar {
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
             output[1][9] = -(g2_a2_left * a2_x_left);
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[1][13] = bias_a1_y_right;
+            let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+                + L_1 * actuator_accelerations[1];
+            output[1][22] = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[1][14] = -bias_a1_x_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
             let t2_right = rho_squared_right - 0.1025;
@@ -2604,6 +2627,7 @@ impl FiveBar {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -2617,7 +2641,6 @@ impl FiveBar {
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
             output[0][0] = acceleration[0];
-            output[1][0] = acceleration[1] + 9.81;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2627,9 +2650,22 @@ impl FiveBar {
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            // --- right
+            let d_x_right = pose[0] - HALF;
+            let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            let t1_right = 0.5 - 0.01125 / rho_squared_right;
+            let h_squared_right = L_1_SQUARED / rho_squared_right
+                - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
+            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            output[1][0] = acceleration[1] + 9.81;
+            // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let k_left = 1.0 / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
@@ -2689,17 +2725,7 @@ impl FiveBar {
             output[1][1] = minus_g1_vy_left * minus_rate_dot_1_left;
             output[1][17] = pose[1] * t4_left;
             // --- right
-            let d_x_right = pose[0] - HALF;
-            let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            let t1_right = 0.5 - 0.01125 / rho_squared_right;
-            let h_squared_right = L_1_SQUARED / rho_squared_right
-                - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_right = 1.0 / det_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
@@ -2811,9 +2837,9 @@ impl FiveBar {
         const L_2: ::core::primitive::f64 = 0.25;
         output[0][0] = acceleration[0];
         // --- sines and cosines
-        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[2], joints[3],
+        let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
+        (s1_right, c1_right)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[0], joints[2],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
@@ -2837,6 +2863,26 @@ impl FiveBar {
         output[1][7] = g1_vy_left * rate_1_left;
         output[0][9] = ::overact::math::signed(g1_vx_left, rate_1_left);
         output[1][9] = ::overact::math::signed(g1_vy_left, rate_1_left);
+        // --- right
+        let c12_right = c1_right * c2_right - s1_right * s2_right;
+        let k1_right = INV_L_1 / s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        output[0][12] = g1_vx_right;
+        let a1_y_right = 9.81 * c1_right;
+        output[0][4] = g1_vx_right * a1_y_right;
+        let s12_right = s1_right * c2_right + c1_right * s2_right;
+        let g1_vy_right = s12_right * k1_right;
+        output[1][12] = g1_vy_right;
+        output[1][4] = g1_vy_right * a1_y_right;
+        let a1_x_right = 9.81 * s1_right;
+        output[0][6] = -(g1_vx_right * a1_x_right);
+        output[1][6] = -(g1_vy_right * a1_x_right);
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        output[0][8] = g1_vx_right * rate_1_right;
+        output[1][8] = g1_vy_right * rate_1_right;
+        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right);
+        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right);
+        // --- left
         let k2_left = k1_left * L_1_PER_L_2;
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
@@ -2870,24 +2916,6 @@ impl FiveBar {
         let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
         output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left);
         // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let k1_right = INV_L_1 / s2_right;
-        let g1_vx_right = c12_right * k1_right;
-        output[0][12] = g1_vx_right;
-        let a1_y_right = 9.81 * c1_right;
-        output[0][4] = g1_vx_right * a1_y_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let g1_vy_right = s12_right * k1_right;
-        output[1][12] = g1_vy_right;
-        output[1][4] = g1_vy_right * a1_y_right;
-        let a1_x_right = 9.81 * s1_right;
-        output[0][6] = -(g1_vx_right * a1_x_right);
-        output[1][6] = -(g1_vy_right * a1_x_right);
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        output[0][8] = g1_vx_right * rate_1_right;
-        output[1][8] = g1_vy_right * rate_1_right;
-        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right);
-        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right);
         let k2_right = k1_right * L_1_PER_L_2;
         let minus_g2_vx_right = c1_right * k2_right;
         let minus_g2_vy_right = s1_right * k2_right;
@@ -2970,6 +2998,11 @@ impl FiveBar {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -2991,33 +3024,6 @@ impl FiveBar {
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            let k_left = 1.0 / det_left;
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let l2_x_left = d_x_left - l1_x_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][11] = -minus_g1_vx_left;
-            output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]);
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let l2_y_left = pose[1] - l1_y_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][11] = -minus_g1_vy_left;
-            output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]);
-            output[0][7] = -(minus_g1_vx_left * actuator_velocities[0]);
-            output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]);
-            output[0][9] = -::overact::math::wide::signed(
-                minus_g1_vx_left,
-                actuator_velocities[0],
-            );
-            output[1][9] = -::overact::math::wide::signed(
-                minus_g1_vy_left,
-                actuator_velocities[0],
-            );
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = -(minus_g1_vx_left * bias_a1_y_left);
-            output[1][3] = -(minus_g1_vy_left * bias_a1_y_left);
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = minus_g1_vx_left * bias_a1_x_left;
-            output[1][5] = minus_g1_vy_left * bias_a1_x_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3029,19 +3035,47 @@ impl FiveBar {
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
+            let g1_vy_right = l2_y_right * k_right;
+            output[1][12] = g1_vy_right;
+            let k_left = 1.0 / det_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             output[0][12] = g1_vx_right;
+            // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            output[0][11] = -minus_g1_vx_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
+            output[1][11] = -minus_g1_vy_left;
+            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+            ::overact::guard::platform(
+                t1,
+                22.615508735629323,
+                ::overact::ActuatorGroup::All,
+            )?;
+            output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]);
+            output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]);
             output[0][2] = g1_vx_right * actuator_accelerations[1];
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let l2_y_right = pose[1] - l1_y_right;
-            let g1_vy_right = l2_y_right * k_right;
-            output[1][12] = g1_vy_right;
             output[1][2] = g1_vy_right * actuator_accelerations[1];
+            output[0][7] = -(minus_g1_vx_left * actuator_velocities[0]);
+            output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]);
             output[0][8] = g1_vx_right * actuator_velocities[1];
             output[1][8] = g1_vy_right * actuator_velocities[1];
+            output[0][9] = -::overact::math::wide::signed(
+                minus_g1_vx_left,
+                actuator_velocities[0],
+            );
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_left,
+                actuator_velocities[0],
+            );
             output[0][10] = ::overact::math::wide::signed(
                 g1_vx_right,
                 actuator_velocities[1],
@@ -3050,19 +3084,19 @@ impl FiveBar {
                 g1_vy_right,
                 actuator_velocities[1],
             );
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = -(minus_g1_vx_left * bias_a1_y_left);
+            output[1][3] = -(minus_g1_vy_left * bias_a1_y_left);
             let bias_a1_y_right = 49.05 * l1_x_right;
             output[0][4] = g1_vx_right * bias_a1_y_right;
             output[1][4] = g1_vy_right * bias_a1_y_right;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = minus_g1_vx_left * bias_a1_x_left;
+            output[1][5] = minus_g1_vy_left * bias_a1_x_left;
             let bias_a1_x_right = 49.05 * l1_y_right;
             output[0][6] = -(g1_vx_right * bias_a1_x_right);
             output[1][6] = -(g1_vy_right * bias_a1_x_right);
             let g2_vy_left = l1_y_left * k_left;
-            let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
             let vy = (g1_vx_right * actuator_velocities[0]
                 + minus_g1_vx_left * actuator_velocities[1]) / t1;
             let g2_vx_left = l1_x_left * k_left;
@@ -3073,14 +3107,6 @@ impl FiveBar {
             let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
             output[0][17] = d_x_left * t2_left;
             output[1][17] = pose[1] * t2_left;
-            let minus_g2_vx_right = l1_x_right * k_right;
-            let minus_g2_vy_right = l1_y_right * k_right;
-            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
-            let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t2_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            output[0][18] = -(d_x_right * t2_right);
-            output[1][18] = -(pose[1] * t2_right);
-            // --- left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
@@ -3091,13 +3117,16 @@ impl FiveBar {
             let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
                 + minus_bias_rate_dot_1_left;
             // --- right
+            let minus_g2_vx_right = l1_x_right * k_right;
+            let minus_g2_vy_right = l1_y_right * k_right;
+            let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
             let rate_2_squared_right = rate_2_right * rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
-            let t3_right = 0.5 * (rho_squared_right - 0.1025);
+            let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
-                * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+                * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
             let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
                 - bias_rate_dot_1_right;
             let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
@@ -3125,7 +3154,7 @@ impl FiveBar {
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
-            let c2_right = t3_right * 20.0;
+            let c2_right = t2_right * 20.0;
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
@@ -3134,13 +3163,17 @@ impl FiveBar {
             output[0][16] = minus_g2_vx_right * a2_x_right
                 - g1_vx_right * inv_l_2_a_on_f2_right;
             let rate_dot_2_right = k_right
-                * (a_on_f2_right - rate_2_squared_right * t3_right);
+                * (a_on_f2_right - rate_2_squared_right * t2_right);
             output[0][14] = -(minus_g2_vx_right * rate_dot_2_right);
             output[1][16] = minus_g2_vy_right * a2_x_right
                 - g1_vy_right * inv_l_2_a_on_f2_right;
             output[1][13] = -(g2_vy_left * minus_rate_dot_2_left);
             output[1][14] = -(minus_g2_vy_right * rate_dot_2_right);
+            let qd_2_right = rate_2_right - actuator_velocities[1];
+            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            output[0][18] = -(d_x_right * t3_right);
             output[1][0] = dvy + 9.81;
+            output[1][18] = -(pose[1] * t3_right);
             ::core::result::Result::Ok(())
         })
     }
@@ -3184,6 +3217,7 @@ impl FiveBar {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -3221,35 +3255,8 @@ impl FiveBar {
                 - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = a1_y_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = -a1_x_left;
-            let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            let k_left = 1.0 / det_left;
-            let minus_g1_vx_left = l2_x_left * k_left;
-            let l2_y_left = pose[1] - l1_y_left;
-            let minus_g1_vy_left = l2_y_left * k_left;
-            let minus_rate_1_left = minus_g1_vx_left * twist[0]
-                + minus_g1_vy_left * twist[1];
-            output[0][7] = -minus_rate_1_left;
-            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left);
-            let g2_vx_left = l1_x_left * k_left;
-            let g2_vy_left = l1_y_left * k_left;
-            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-            let rate_2_squared_left = rate_2_left * rate_2_left;
-            let a_on_f1_left = l2_x_left * acceleration[0]
-                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
-            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-            let t2_left = rho_squared_left - 0.1025;
-            let t3_left = 0.5 * t2_left;
-            let minus_rate_dot_1_left = k_left
-                * (a_on_f1_left + rate_1_squared_left * t3_left);
-            output[0][1] = -minus_rate_dot_1_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3260,19 +3267,23 @@ impl FiveBar {
                 - t1_right * t1_right;
             ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let a1_y_right = 49.05 * l1_x_right;
-            output[1][4] = a1_y_right;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let a1_x_right = 49.05 * l1_y_right;
-            output[1][6] = -a1_x_right;
-            let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+            let l2_x_right = d_x_right - l1_x_right;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
+            // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+            let l2_x_left = d_x_left - l1_x_left;
+            let k_left = 1.0 / det_left;
+            let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+            let l2_y_left = pose[1] - l1_y_left;
+            let minus_g1_vy_left = l2_y_left * k_left;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
@@ -3280,31 +3291,21 @@ impl FiveBar {
                 22.615508735629323,
                 ::overact::ActuatorGroup::Kept,
             )?;
+            let a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = a1_y_left;
+            let a1_y_right = 49.05 * l1_x_right;
+            output[1][4] = a1_y_right;
+            let a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = -a1_x_left;
+            let a1_x_right = 49.05 * l1_y_right;
+            output[1][6] = -a1_x_right;
+            let minus_rate_1_left = minus_g1_vx_left * twist[0]
+                + minus_g1_vy_left * twist[1];
+            output[0][7] = -minus_rate_1_left;
+            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left);
             let inv_det_ja = 1.0 / det_ja;
-            let vy_by_a1 = g1_vx_right * inv_det_ja;
-            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-            // --- left
-            let minus_a_on_f2_left = l1_x_left * acceleration[0]
-                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let c2_left = INV_HALF * t2_left;
-            let minus_s2_left = 20.0 * det_left;
-            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            output[0][15] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
-            let rate_dot_2_left = k_left
-                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-            output[0][13] = g2_a1_left * rate_dot_2_left;
-            let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][17] = ::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                qd_2_left,
-            );
-            let t1_platform = acceleration[1] + 9.81;
-            output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-            output[1][0] = vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0];
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
@@ -3334,8 +3335,42 @@ impl FiveBar {
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             output[0][14] = -(g2_a1_right * minus_rate_dot_2_right);
+            let t1_platform = acceleration[1] + 9.81;
+            output[1][0] = vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0];
+            let vy_by_a1 = g1_vx_right * inv_det_ja;
+            let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+            output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
+            // --- left
+            let g2_vx_left = l1_x_left * k_left;
+            let g2_vy_left = l1_y_left * k_left;
+            let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+            let rate_2_squared_left = rate_2_left * rate_2_left;
+            let a_on_f1_left = l2_x_left * acceleration[0]
+                + l2_y_left * acceleration[1] + L_2_SQUARED * rate_2_squared_left;
+            let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+            let t2_left = rho_squared_left - 0.1025;
+            let t3_left = 0.5 * t2_left;
+            let minus_rate_dot_1_left = k_left
+                * (a_on_f1_left + rate_1_squared_left * t3_left);
+            output[0][1] = -minus_rate_dot_1_left;
+            let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+            let minus_a_on_f2_left = l1_x_left * acceleration[0]
+                + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let c2_left = INV_HALF * t2_left;
+            let minus_s2_left = 20.0 * det_left;
+            let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+                - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+            output[0][15] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
+            let rate_dot_2_left = k_left
+                * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let g2_a2_left = k_left * inv_det_ja;
             output[1][13] = g2_a2_left * rate_dot_2_left;
+            output[0][13] = g2_a1_left * rate_dot_2_left;
+            let qd_2_left = minus_rate_1_left + rate_2_left;
+            output[0][17] = ::overact::math::wide::signed(
+                g2_a1_left - 1.0,
+                qd_2_left,
+            );
             output[1][14] = -(g2_a2_right * minus_rate_dot_2_right);
             output[1][15] = -(g2_a2_left * a2_x_left);
             output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
@@ -3424,44 +3459,18 @@ impl FiveBar {
         output[1][11] = 0.0;
         output[1][12] = 1.0;
         // --- sines and cosines
-        let [(s1_left, c1_left), (s1_right, c1_right), (s2_left, c2_left),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
-            joints[0], joints[2], joints[1], joints[3],
+        let [(s2_left, c2_left), (s2_right, c2_right), (s1_right, c1_right),
+        (s1_left, c1_left)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[2], joints[0],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        let a1_y_left = 9.81 * c1_left;
-        output[0][3] = a1_y_left;
-        let a1_y_right = 9.81 * c1_right;
-        output[1][4] = a1_y_right;
-        let a1_x_left = 9.81 * s1_left;
-        output[0][5] = -a1_x_left;
-        let a1_x_right = 9.81 * s1_right;
-        output[1][6] = -a1_x_right;
-        // --- left
-        let inv_s2_left = 1.0 / s2_left;
-        let fk1_x_left = c2_left * inv_s2_left;
-        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
-        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
-        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
-        output[0][9] = ::overact::math::sign(t2_left);
-        let rate_1_left = INV_L_1 * t2_left;
-        output[0][7] = rate_1_left;
-        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
-            + s1_left * acceleration[1];
-        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
-            + c1_left * acceleration[1] - s1_left * acceleration[0];
-        let t3_left = t2_left * rate_1_left;
-        let k2_left = INV_L_2 * inv_s2_left;
-        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
-        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
-        let t4_left = a_on_f1_left + fk1_x_left * t3_left
-            + rate_2_squared_left * (L_2 * inv_s2_left);
-        let rate_dot_1_left = INV_L_1 * t4_left;
-        output[0][1] = rate_dot_1_left;
         let inv_s2_right = 1.0 / s2_right;
         let fk1_x_right = c2_right * inv_s2_right;
         let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
+        // --- left
+        let inv_s2_left = 1.0 / s2_left;
+        let fk1_x_left = c2_left * inv_s2_left;
         let s1_fk1_x_plus_c1_left = s1_left * fk1_x_left + c1_left;
         let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
         let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
@@ -3474,7 +3483,33 @@ impl FiveBar {
         )?;
         let l_1_per_det_ja = L_1 / det_ja;
         let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
+        let t1_platform = acceleration[1] + 9.81;
         let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
+        output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
+        let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
+        let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
+        output[1][0] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform;
+        let a1_y_left = 9.81 * c1_left;
+        output[0][3] = a1_y_left;
+        let a1_y_right = 9.81 * c1_right;
+        output[1][4] = a1_y_right;
+        let a1_x_left = 9.81 * s1_left;
+        output[0][5] = -a1_x_left;
+        let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
+            + s1_left * acceleration[1];
+        let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
+            + c1_left * acceleration[1] - s1_left * acceleration[0];
+        let c1_vx_plus_s1_vy_left = c1_left * twist[0] + s1_left * twist[1];
+        let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
+        let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
+        let rate_1_left = INV_L_1 * t2_left;
+        output[0][7] = rate_1_left;
+        let t3_left = t2_left * rate_1_left;
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let t4_left = a_on_f1_left + fk1_x_left * t3_left
+            + rate_2_squared_left * (L_2 * inv_s2_left);
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
         let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
@@ -3482,21 +3517,21 @@ impl FiveBar {
         let a2_x_left = c2_left * (a1_x_left - t3_left)
             + s2_left * (a1_y_left + t4_left);
         output[0][15] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
-        let t1_platform = acceleration[1] + 9.81;
-        output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
-        let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
-        let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
-        output[1][0] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform;
+        let rate_dot_1_left = INV_L_1 * t4_left;
+        output[0][1] = rate_dot_1_left;
+        output[0][9] = ::overact::math::sign(t2_left);
         let minus_rate_dot_2_left = k2_left
             * (a_on_f2_left + t1_left * minus_rate_2_left);
         output[0][13] = -(g2_a1_left * minus_rate_dot_2_left);
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left);
         let minus_g2_a2_left = l_1_per_det_ja * k2_left;
         output[1][13] = minus_g2_a2_left * minus_rate_dot_2_left;
         output[1][15] = minus_g2_a2_left * a2_x_left;
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left);
         output[1][17] = ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left);
         // --- right
+        let a1_x_right = 9.81 * s1_right;
+        output[1][6] = -a1_x_right;
         let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
             + s1_right * acceleration[1];
         let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
@@ -3582,6 +3617,11 @@ impl FiveBar {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -3612,8 +3652,6 @@ impl FiveBar {
             output[1][9] = 0.0;
             output[1][11] = 0.0;
             output[1][12] = 1.0;
-            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]);
-            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]);
             // --- left
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
@@ -3625,41 +3663,33 @@ impl FiveBar {
                 - t1_left * t1_left;
             ::overact::guard::reach(h_squared_left, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
-            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-            let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = bias_a1_y_left;
-            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-            let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = -bias_a1_x_left;
+            let det_left = rho_squared_left * h_left;
+            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
+            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
+            ::overact::guard::reach(h_squared_right, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
-            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-            let bias_a1_y_right = 49.05 * l1_x_right;
-            output[1][4] = bias_a1_y_right;
-            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-            let bias_a1_x_right = 49.05 * l1_y_right;
-            output[1][6] = -bias_a1_x_right;
-            let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
+            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+            let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             // --- left
+            let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
-            let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, "right")?;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
+            let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
+            let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
@@ -3674,6 +3704,14 @@ impl FiveBar {
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
+            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]);
+            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]);
+            let bias_a1_y_left = 49.05 * l1_x_left;
+            output[0][3] = bias_a1_y_left;
+            let bias_a1_y_right = 49.05 * l1_x_right;
+            output[1][4] = bias_a1_y_right;
+            let bias_a1_x_left = 49.05 * l1_y_left;
+            output[0][5] = -bias_a1_x_left;
             let inv_det_ja = 1.0 / det_ja;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
@@ -3684,6 +3722,8 @@ impl FiveBar {
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
             output[1][15] = -(g2_a2_left * a2_x_left);
+            let bias_a1_x_right = 49.05 * l1_y_right;
+            output[1][6] = -bias_a1_x_right;
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
             let t2_right = rho_squared_right - 0.1025;

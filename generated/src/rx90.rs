@@ -512,6 +512,11 @@ impl Rx90 {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, joint_velocities, joint_accelerations) = (
+                *joints,
+                *joint_velocities,
+                *joint_accelerations,
+            );
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             output[0][0..2].fill(joint_accelerations[0]);
@@ -1100,6 +1105,11 @@ impl Rx90 {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, joint_velocities, joint_accelerations) = (
+                *joints,
+                *joint_velocities,
+                *joint_accelerations,
+            );
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             output[0][0] = joint_accelerations[0];

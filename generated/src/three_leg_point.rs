@@ -1515,6 +1515,7 @@ impl ThreeLegPoint {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -1540,16 +1541,83 @@ impl ThreeLegPoint {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let half_x = 0.5 * pose[0];
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = half_x - t1_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg2
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][14] = g1_vx_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][14] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][12] = g1_vx_leg2 * rate_1_leg2;
+            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][13] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
+            // --- leg3
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][24] = g1_vx_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][24] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][22] = g1_vx_leg3 * rate_1_leg3;
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][23] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
+            // --- leg1
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][4] = -minus_g1_vx_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             output[1][4] = g1_vy_leg1;
-            let half_x = 0.5 * pose[0];
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][4] = -minus_g1_vx_leg1;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
             output[1][2] = g1_vy_leg1 * rate_1_leg1;
@@ -1565,7 +1633,6 @@ impl ThreeLegPoint {
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let t1_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
             output[1][9] = d_x_leg1 * t1_leg1;
-            output[0][9] = pose[0] * t1_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
@@ -1595,49 +1662,17 @@ impl ThreeLegPoint {
             output[1][1] = -minus_zz_1_leg1_on_vy;
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
+            output[0][9] = pose[0] * t1_leg1;
             output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
             let inv_l_1_dvy = INV_L_1 * acceleration[1];
             output[1][6] = inv_l_1_dvy
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
             output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
-            let t1_leg3 = pose[1] * 0.8660254037844386;
-            // --- leg2
-            let d_y_leg2 = half_x - t1_leg3;
-            let t1_leg2 = pose[0] + 0.3031088913245535;
-            let y_plus_half_radius = pose[1] + HALF_RADIUS;
-            let t2_leg2 = 0.5 * y_plus_half_radius;
-            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
-                + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][14] = g1_vx_leg2;
-            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-                - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][14] = -minus_g1_vy_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][12] = g1_vx_leg2 * rate_1_leg2;
-            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][13] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
-            let t2_leg3 = INV_L_1 * y_plus_half_radius;
-            let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+            let t3_leg3 = INV_L_1 * y_plus_half_radius;
+            // --- leg2
+            let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let t3_leg2 = INV_L_1 * t1_leg2;
             let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
@@ -1675,44 +1710,15 @@ impl ThreeLegPoint {
             let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = zz_2_leg2_on_vy;
             output[1][16] = inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
-            output[1][19] = -(t2_leg3 * t4_leg2);
+            output[1][19] = -(t3_leg3 * t4_leg2);
             output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx);
             output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
             // --- leg3
-            let t3_leg3 = pose[0] - 0.3031088913245535;
-            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
-            let d_y_leg3 = half_x + t1_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
-                + INV_TWICE_L_1 * l2_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            let k_leg3 = L_1 / det_leg3;
-            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][24] = g1_vx_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][24] = -minus_g1_vy_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][22] = g1_vx_leg3 * rate_1_leg3;
-            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][23] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t4_leg3 = INV_L_1 * t3_leg3;
+            let t4_leg3 = INV_L_1 * t2_leg3;
             let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
@@ -1720,13 +1726,6 @@ impl ThreeLegPoint {
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
-                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
-                + g1_vx_leg3 * minus_a_on_f2_leg3;
-            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            output[0][29] = -(t4_leg3 * t5_leg3);
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
@@ -1734,11 +1733,18 @@ impl ThreeLegPoint {
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_vx;
             output[0][21] = zz_1_leg3_on_vx;
+            let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+                + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_vx;
             output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            output[0][29] = -(t4_leg3 * t5_leg3);
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3;
             output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
@@ -1748,7 +1754,7 @@ impl ThreeLegPoint {
             output[1][25] = zz_2_leg3_on_vy;
             output[1][26] = inv_l_1_dvy
                 - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
-            output[1][29] = -(t2_leg3 * t5_leg3);
+            output[1][29] = -(t3_leg3 * t5_leg3);
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
             output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
             ::core::result::Result::Ok(())
@@ -1801,6 +1807,7 @@ impl ThreeLegPoint {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -1810,9 +1817,9 @@ impl ThreeLegPoint {
             output[0][30] = acceleration[0];
             output[1][30] = acceleration[1];
             // --- sines and cosines
-            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
@@ -2059,6 +2066,11 @@ impl ThreeLegPoint {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -2082,16 +2094,7 @@ impl ThreeLegPoint {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            let k_leg1 = 1.0 / det_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][4] = g1_vy_leg1;
             let half_x = 0.5 * pose[0];
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][4] = -minus_g1_vx_leg1;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -2104,47 +2107,43 @@ impl ThreeLegPoint {
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][14] = g1_vx_leg2;
-            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-                + INV_TWICE_L_1 * l1_x_leg2;
-            let t1_leg3 = y_plus_half_radius * INV_L_1;
-            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
-            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-            output[1][14] = g1_vy_leg2;
             // --- leg3
-            let t2_leg3 = pose[0] - 0.3031088913245535;
-            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let t1_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let d_y_leg3 = pose[0] - d_y_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg1
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][4] = -minus_g1_vx_leg1;
+            // --- leg2
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][14] = g1_vx_leg2;
+            // --- leg3
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let k_leg3 = L_1 / det_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             output[0][24] = g1_vx_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][24] = -minus_g1_vy_leg3;
-            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
-                + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -2152,10 +2151,23 @@ impl ThreeLegPoint {
                 26.146658848896372,
                 ::overact::ActuatorGroup::All,
             )?;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][4] = g1_vy_leg1;
+            let t2_leg3 = y_plus_half_radius * INV_L_1;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            output[1][14] = g1_vy_leg2;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][24] = -minus_g1_vy_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
+                + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
-            let t1 = g1_vx_leg2 * actuator_velocities[1]
-                - minus_g1_vx_leg1 * actuator_velocities[0]
-                + g1_vx_leg3 * actuator_velocities[2];
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -2164,6 +2176,9 @@ impl ThreeLegPoint {
                 26.146658848896372,
                 ::overact::ActuatorGroup::All,
             )?;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
             let vy = (g1_vy_leg1 * actuator_velocities[0]
                 + g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
@@ -2207,18 +2222,18 @@ impl ThreeLegPoint {
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
             output[0][19] = -(t3_leg2 * t4_leg2);
-            output[1][19] = -(t1_leg3 * t4_leg2);
+            output[1][19] = -(t2_leg3 * t4_leg2);
             // --- leg3
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t3_leg3 = t2_leg3 * INV_L_1;
+            let t3_leg3 = t1_leg3 * INV_L_1;
             let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][29] = -(t3_leg3 * t4_leg3);
-            output[1][29] = -(t1_leg3 * t4_leg3);
+            output[1][29] = -(t2_leg3 * t4_leg3);
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
@@ -2395,6 +2410,7 @@ impl ThreeLegPoint {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -2424,30 +2440,6 @@ impl ThreeLegPoint {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            let k_leg1 = 1.0 / det_leg1;
-            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-                + minus_g2_vy_leg1 * twist[1];
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
-                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-            let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            output[0][0] = -minus_rate_dot_1_leg1;
-            output[0][1] = -minus_rate_dot_1_leg1;
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -2462,14 +2454,32 @@ impl ThreeLegPoint {
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg1
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -2477,48 +2487,29 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            let inv_det_ja = 1.0 / det_ja;
-            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            );
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
-            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
-            output[0][9] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            );
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][12] = rate_1_leg2;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1];
             output[0][30] = -minus_m_platform_on_q1_leg1;
-            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                - t1_platform;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1];
             output[1][30] = -minus_m_platform_on_q1_leg2;
-            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -2546,7 +2537,7 @@ impl ThreeLegPoint {
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
             output[1][16] = L_1
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t1_platform;
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             output[1][19] = ::overact::math::wide::signed(
@@ -2561,28 +2552,57 @@ impl ThreeLegPoint {
             );
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t2_platform);
             output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            output[0][0] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t2_platform;
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[1][9] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            output[0][9] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t1_platform;
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             // --- leg3
-            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            ::overact::guard::platform(
-                det_ja,
-                15.09578052481963,
-                ::overact::ActuatorGroup::Kept,
-            )?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -2626,7 +2646,7 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform
+            output[0][26] = -(t2_platform
                 + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
@@ -2635,7 +2655,7 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
+            output[1][26] = -(t1_platform
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
             output[0][29] = ::overact::math::wide::signed(
@@ -2700,6 +2720,7 @@ impl ThreeLegPoint {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -2713,9 +2734,9 @@ impl ThreeLegPoint {
             output[1][8] = 0.0;
             output[1][14] = 1.0;
             // --- sines and cosines
-            let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
-                joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
@@ -2726,23 +2747,6 @@ impl ThreeLegPoint {
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
-                - c12_leg1 * acceleration[1];
-            let g2_vx_leg1 = s1_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
-            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let v2_by_1_y_leg1 = L_1 * c2_leg1;
-            let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][0] = -minus_rate_dot_1_leg1;
-            output[0][1] = -minus_rate_dot_1_leg1;
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -2758,46 +2762,63 @@ impl ThreeLegPoint {
                 15.095780524666612,
                 ::overact::ActuatorGroup::Kept,
             )?;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][2] = rate_1_leg1;
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][12] = rate_1_leg2;
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
             let inv_det_ja = 1.0 / det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1];
+            output[0][30] = -minus_m_platform_on_q1_leg1;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1];
+            output[1][30] = -minus_m_platform_on_q1_leg2;
+            // --- leg1
+            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+                - c12_leg1 * acceleration[1];
+            let g2_vx_leg1 = s1_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+            let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let v2_by_1_y_leg1 = L_1 * c2_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+            output[0][0] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + L_1 * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - g2_vx_leg1 * minus_vx_by_a1;
-            output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
-            output[1][7] = g2_a2_leg1 * a_on_f1_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
             output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
+            output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
             output[0][9] = ::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 qd_2_leg1,
             );
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][12] = rate_1_leg2;
-            // --- platform
-            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
-                + minus_vy_by_a1 * acceleration[1];
-            output[0][30] = -minus_m_platform_on_q1_leg1;
-            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                - t1_platform;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
-            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
-                + minus_vy_by_a2 * acceleration[1];
-            output[1][30] = -minus_m_platform_on_q1_leg2;
+            output[1][7] = g2_a2_leg1 * a_on_f1_leg1;
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
             output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -2957,6 +2978,11 @@ impl ThreeLegPoint {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -2986,10 +3012,6 @@ impl ThreeLegPoint {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            let k_leg1 = 1.0 / det_leg1;
-            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -3004,16 +3026,8 @@ impl ThreeLegPoint {
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -3021,25 +3035,28 @@ impl ThreeLegPoint {
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
-                + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            let k_leg3 = L_1 / det_leg3;
-            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            // --- leg1
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            // --- leg2
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
@@ -3047,17 +3064,15 @@ impl ThreeLegPoint {
                 15.09578052481963,
                 ::overact::ActuatorGroup::Kept,
             )?;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
-                - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][24] = g1_a1_leg3;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][24] = g1_a2_leg3;
+            // --- leg3
+            let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+            let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+            let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+            let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -3066,6 +3081,9 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
@@ -3092,11 +3110,15 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             output[1][12] = rate_1_leg2;
             output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][24] = g1_a1_leg3;
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][22] = g1_a1_leg3 * rate_1_leg3;
-            output[1][22] = g1_a2_leg3 * rate_1_leg3;
             output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
@@ -3112,6 +3134,13 @@ impl ThreeLegPoint {
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][24] = g1_a2_leg3;
+            output[1][22] = g1_a2_leg3 * rate_1_leg3;
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -3120,18 +3149,6 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            );
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            output[0][19] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            );
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -3184,6 +3201,8 @@ impl ThreeLegPoint {
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
@@ -3223,48 +3242,58 @@ impl ThreeLegPoint {
             output[0][25] = zz_2_leg3_on_q1_leg1;
             output[0][26] = -(t1_platform
                 + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_q1_leg1;
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
                 + minus_vy_by_a2 * dvy;
             output[1][30] = -minus_m_platform_on_q1_leg2;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2;
-            output[1][11] = -minus_rate_dot_1_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
-            output[1][16] = L_1
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2;
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][29] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            );
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
             output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
             output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
-            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[0][15] = zz_2_leg2_on_q1_leg1;
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][10] = -minus_rate_dot_1_leg2;
+            output[1][11] = -minus_rate_dot_1_leg2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-            output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2;
-            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-            output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
-            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[0][19] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
+            let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
             output[0][29] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            );
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[1][29] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
             output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
@@ -3314,6 +3343,7 @@ impl ThreeLegPoint {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -3339,16 +3369,83 @@ impl ThreeLegPoint {
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            let half_x = 0.5 * pose[0];
+            let t1_leg3 = pose[1] * 0.8660254037844386;
+            // --- leg2
+            let d_y_leg2 = half_x - t1_leg3;
+            let t1_leg2 = pose[0] + 0.3031088913245535;
+            let y_plus_half_radius = pose[1] + HALF_RADIUS;
+            let t2_leg2 = 0.5 * y_plus_half_radius;
+            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
+                + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            // --- leg3
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+            let d_y_leg3 = half_x + t1_leg3;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg2
+            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][11] = g1_vx_leg2;
+            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+                - INV_TWICE_L_1 * minus_l2_x_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            output[1][11] = -minus_g1_vy_leg2;
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[0][5] = g1_vx_leg2 * rate_1_leg2;
+            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
+            output[1][8] = -::overact::math::wide::signed(
+                minus_g1_vy_leg2,
+                rate_1_leg2,
+            );
+            // --- leg3
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
+                + INV_TWICE_L_1 * l2_y_leg3;
+            let k_leg3 = L_1 / det_leg3;
+            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            output[0][12] = g1_vx_leg3;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][12] = -minus_g1_vy_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+            output[0][6] = g1_vx_leg3 * rate_1_leg3;
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
+            output[1][9] = -::overact::math::wide::signed(
+                minus_g1_vy_leg3,
+                rate_1_leg3,
+            );
+            // --- leg1
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][10] = -minus_g1_vx_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             output[1][10] = g1_vy_leg1;
-            let half_x = 0.5 * pose[0];
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][10] = -minus_g1_vx_leg1;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
             output[1][4] = g1_vy_leg1 * rate_1_leg1;
@@ -3369,61 +3466,28 @@ impl ThreeLegPoint {
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1);
             output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1;
-            let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-            let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
-            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            let t1_leg3 = pose[1] * 0.8660254037844386;
-            // --- leg2
-            let d_y_leg2 = half_x - t1_leg3;
-            let t1_leg2 = pose[0] + 0.3031088913245535;
-            let y_plus_half_radius = pose[1] + HALF_RADIUS;
-            let t2_leg2 = 0.5 * y_plus_half_radius;
-            let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-            let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
-                + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-            let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][11] = g1_vx_leg2;
-            let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-                - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][11] = -minus_g1_vy_leg2;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][5] = g1_vx_leg2 * rate_1_leg2;
-            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][8] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            );
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
-            let t2_leg3 = y_plus_half_radius * INV_L_1;
-            let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+            let t3_leg3 = y_plus_half_radius * INV_L_1;
+            // --- leg2
+            let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let t3_leg2 = t1_leg2 * INV_L_1;
             let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
@@ -3440,7 +3504,6 @@ impl ThreeLegPoint {
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
             output[0][20] = -(t3_leg2 * t4_leg2);
-            output[1][20] = -(t2_leg3 * t4_leg2);
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
@@ -3453,41 +3516,13 @@ impl ThreeLegPoint {
                 + minus_g1_vy_leg2 * a_on_f2_leg2);
             output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][20] = -(t3_leg3 * t4_leg2);
             // --- leg3
-            let t3_leg3 = pose[0] - 0.3031088913245535;
-            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
-            let d_y_leg3 = half_x + t1_leg3;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-            let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
-                + INV_TWICE_L_1 * l2_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            let k_leg3 = L_1 / det_leg3;
-            let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][12] = g1_vx_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][12] = -minus_g1_vy_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][6] = g1_vx_leg3 * rate_1_leg3;
-            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][9] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            );
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t4_leg3 = t3_leg3 * INV_L_1;
+            let t4_leg3 = t2_leg3 * INV_L_1;
             let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
@@ -3502,7 +3537,7 @@ impl ThreeLegPoint {
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][21] = -(t4_leg3 * t5_leg3);
-            output[1][21] = -(t2_leg3 * t5_leg3);
+            output[1][21] = -(t3_leg3 * t5_leg3);
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
@@ -3565,6 +3600,7 @@ impl ThreeLegPoint {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -3572,9 +3608,9 @@ impl ThreeLegPoint {
             output[0][0] = acceleration[0];
             output[1][0] = acceleration[1];
             // --- sines and cosines
-            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
@@ -3782,6 +3818,11 @@ impl ThreeLegPoint {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -3803,23 +3844,14 @@ impl ThreeLegPoint {
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            let k_leg1 = 1.0 / det_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][10] = g1_vy_leg1;
-            let half_x = 0.5 * pose[0];
-            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][10] = -minus_g1_vx_leg1;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t2_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+            let half_x = 0.5 * pose[0];
             let t1_leg3 = pose[1] * 0.8660254037844386;
             let d_y_leg2 = half_x - t1_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
@@ -3828,47 +3860,41 @@ impl ThreeLegPoint {
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
-            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-                + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            let k_leg2 = L_1 / det_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][11] = g1_vx_leg2;
-            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-                + INV_TWICE_L_1 * l1_x_leg2;
-            let t2_leg3 = y_plus_half_radius * INV_L_1;
-            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
-            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-            output[1][11] = g1_vy_leg2;
             // --- leg3
-            let t3_leg3 = pose[0] - 0.3031088913245535;
-            let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+            let t2_leg3 = pose[0] - 0.3031088913245535;
+            let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
             ::overact::guard::reach(h_squared_leg3, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
-            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg2
+            let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+            let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+            let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+            let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+            let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+                + INV_TWICE_L_1 * l2_y_leg2;
+            let k_leg2 = L_1 / det_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            output[0][11] = g1_vx_leg2;
+            let k_leg1 = 1.0 / det_leg1;
+            let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+            let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let k_leg3 = L_1 / det_leg3;
+            let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            output[0][10] = -minus_g1_vx_leg1;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             output[0][12] = g1_vx_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][12] = -minus_g1_vy_leg3;
-            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
-                + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -3876,10 +3902,23 @@ impl ThreeLegPoint {
                 26.146658848896372,
                 ::overact::ActuatorGroup::All,
             )?;
+            let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+                + INV_TWICE_L_1 * l1_x_leg2;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+            output[1][10] = g1_vy_leg1;
+            let t3_leg3 = y_plus_half_radius * INV_L_1;
+            let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg3;
+            let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+            output[1][11] = g1_vy_leg2;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+            output[1][12] = -minus_g1_vy_leg3;
+            let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
+                + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
-            let t1 = g1_vx_leg2 * actuator_velocities[1]
-                - minus_g1_vx_leg1 * actuator_velocities[0]
-                + g1_vx_leg3 * actuator_velocities[2];
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -3888,6 +3927,9 @@ impl ThreeLegPoint {
                 26.146658848896372,
                 ::overact::ActuatorGroup::All,
             )?;
+            let t1 = g1_vx_leg2 * actuator_velocities[1]
+                - minus_g1_vx_leg1 * actuator_velocities[0]
+                + g1_vx_leg3 * actuator_velocities[2];
             let vy = (g1_vy_leg1 * actuator_velocities[0]
                 + g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
@@ -3931,18 +3973,18 @@ impl ThreeLegPoint {
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
             output[0][20] = -(t3_leg2 * t4_leg2);
-            output[1][20] = -(t2_leg3 * t4_leg2);
+            output[1][20] = -(t3_leg3 * t4_leg2);
             // --- leg3
-            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+            let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-            let t4_leg3 = t3_leg3 * INV_L_1;
+            let t4_leg3 = t2_leg3 * INV_L_1;
             let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][21] = -(t4_leg3 * t5_leg3);
-            output[1][21] = -(t2_leg3 * t5_leg3);
+            output[1][21] = -(t3_leg3 * t5_leg3);
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
@@ -4082,6 +4124,7 @@ impl ThreeLegPoint {
             &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -4113,30 +4156,8 @@ impl ThreeLegPoint {
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
             ::overact::guard::reach(h_squared_leg1, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
-            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            let k_leg1 = 1.0 / det_leg1;
-            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][4] = rate_1_leg1;
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
-            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-                + minus_g2_vy_leg1 * twist[1];
-            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
-                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
-            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-            let minus_rate_dot_1_leg1 = k_leg1
-                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            output[0][1] = -minus_rate_dot_1_leg1;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4151,54 +4172,60 @@ impl ThreeLegPoint {
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
             ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+            // --- leg1
+            let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+            let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+            let k_leg1 = 1.0 / det_leg1;
+            let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+            let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+            let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+            let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
+            let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+            output[0][4] = rate_1_leg1;
             let inv_det_ja = 1.0 / det_ja;
-            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][19] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            );
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
-                + minus_g2_vy_leg1 * minus_vy_by_a1;
-            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][5] = rate_1_leg2;
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            output[0][19] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            );
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
-                + minus_vy_by_a1 * acceleration[1]);
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             output[1][0] = -(minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1]);
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][5] = rate_1_leg2;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]);
             output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -4216,46 +4243,67 @@ impl ThreeLegPoint {
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            let v2_by_1_y_leg2 = INV_TWICE_L_1
+                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2;
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            );
             output[1][20] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            let v2_by_1_y_leg2 = INV_TWICE_L_1
-                * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2;
-            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
+            // --- leg1
+            let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+            let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+            let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+                + minus_g2_vy_leg1 * twist[1];
+            let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
+                - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
+            let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+                + minus_g2_vy_leg1 * minus_vy_by_a1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+                + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let minus_rate_dot_1_leg1 = k_leg1
+                * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+            output[0][1] = -minus_rate_dot_1_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let g2_a2_leg1 = k_leg1 * inv_det_ja;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+            output[0][19] = -::overact::math::wide::signed(
+                g2_a1_leg1 - 1.0,
+                minus_qd_2_leg1,
+            );
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
+            output[1][19] = -::overact::math::wide::signed(
+                g2_a2_leg1,
+                minus_qd_2_leg1,
+            );
             // --- leg3
-            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            ::overact::guard::platform(
-                det_ja,
-                15.09578052481963,
-                ::overact::ActuatorGroup::Kept,
-            )?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -4361,6 +4409,7 @@ impl ThreeLegPoint {
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
+            let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -4376,22 +4425,49 @@ impl ThreeLegPoint {
             output[1][10] = 0.0;
             output[1][11] = 1.0;
             // --- sines and cosines
-            let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
-                joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+            let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+            (s1_leg2, c1_leg2), (s1_leg1, c1_leg1), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+                joints[1], joints[3], joints[5], joints[2], joints[0], joints[4],
             ]);
             ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
             ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
             ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            // --- leg2
+            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+            let k_leg2 = INV_L_1 / s2_leg2;
+            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
+            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
+                - g1_vy_leg1 * g1_vx_leg2;
+            ::overact::guard::platform(
+                det_ja,
+                15.095780524666612,
+                ::overact::ActuatorGroup::Kept,
+            )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = rate_1_leg1;
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1]);
             output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]);
+            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+            output[1][5] = rate_1_leg2;
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -4404,38 +4480,16 @@ impl ThreeLegPoint {
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
             output[0][1] = -minus_rate_dot_1_leg1;
-            // --- leg2
-            let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-            let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-            let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-            let k_leg2 = INV_L_1 / s2_leg2;
-            let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-            let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
-                - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.095780524666612,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
+                - g2_vx_leg1 * minus_vx_by_a1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + L_1 * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
-                - g2_vx_leg1 * minus_vx_by_a1;
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][5] = rate_1_leg2;
             output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
             output[0][19] = ::overact::math::wide::signed(
@@ -4444,11 +4498,7 @@ impl ThreeLegPoint {
             );
             output[1][16] = g2_a2_leg1 * a_on_f1_leg1;
             output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
-                + minus_vy_by_a1 * acceleration[1]);
-            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
-                + minus_vy_by_a2 * acceleration[1]);
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -4588,6 +4638,11 @@ impl ThreeLegPoint {
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         ::overact::roomiest(#[inline(always)] || {
+            let (pose, actuator_velocities, actuator_accelerations) = (
+                *pose,
+                *actuator_velocities,
+                *actuator_accelerations,
+            );
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -4612,7 +4667,15 @@ impl ThreeLegPoint {
             output[1][7] = 0.0;
             output[1][10] = 0.0;
             output[1][11] = 1.0;
-            // --- leg3
+            // --- leg1
+            let d_x_leg1 = pose[1] - RADIUS;
+            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            let det_leg1 = rho_squared_leg1 * h_leg1;
+            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4623,31 +4686,33 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
+            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+            ::overact::guard::reach(h_squared_leg2, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let det_leg2 = rho_squared_leg2 * h_leg2;
+            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            // --- leg3
+            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let det_leg3 = rho_squared_leg3 * h_leg3;
+            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
-            let det_leg2 = rho_squared_leg2 * h_leg2;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg1
-            let d_x_leg1 = pose[1] - RADIUS;
-            let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-            let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-            let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -4658,42 +4723,20 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            let inv_det_ja = 1.0 / det_ja;
-            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            ::overact::guard::platform(
+                det_ja,
+                15.09578052481963,
+                ::overact::ActuatorGroup::Kept,
+            )?;
             // --- leg3
-            let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-            let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
-            let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-            ::overact::guard::platform(
-                det_ja,
-                15.09578052481963,
-                ::overact::ActuatorGroup::Kept,
-            )?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
-                - 3.608439182435161 * l2_y_leg3;
-            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
-                - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][12] = g1_a1_leg3;
-            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
-            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
-                - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][12] = g1_a2_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -4702,6 +4745,9 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_1 = 1.0 / s_1_1;
+            let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
+                - 3.608439182435161 * l2_y_leg3;
+            let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
@@ -4728,10 +4774,21 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             output[1][5] = rate_1_leg2;
             output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            let inv_det_ja = 1.0 / det_ja;
+            let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+            let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+            let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
+                - g1_vx_leg3 * minus_vx_by_a1;
+            output[0][12] = g1_a1_leg3;
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][6] = g1_a1_leg3 * rate_1_leg3;
-            output[1][6] = g1_a2_leg3 * rate_1_leg3;
             output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+            let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+            let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
+                - g1_vx_leg3 * minus_vx_by_a2;
+            output[1][12] = g1_a2_leg3;
+            output[1][6] = g1_a2_leg3 * rate_1_leg3;
             output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -4756,18 +4813,6 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            );
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            );
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -4820,6 +4865,8 @@ impl ThreeLegPoint {
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
@@ -4832,9 +4879,10 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
@@ -4872,8 +4920,17 @@ impl ThreeLegPoint {
             output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
-            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            );
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            );
             ::core::result::Result::Ok(())
         })
     }

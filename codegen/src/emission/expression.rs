@@ -136,7 +136,12 @@ impl<'a> Writer<'a> {
     }
 
     /// Numbers of the output.
-    fn place(&self, row: usize, columns: &Range<usize>, value: &Expression) -> TokenStream {
+    pub(super) fn place(
+        &self,
+        row: usize,
+        columns: &Range<usize>,
+        value: &Expression,
+    ) -> TokenStream {
         let value = self.tokens(value);
         let [row, first, end] = [row, columns.start, columns.end].map(Literal::usize_unsuffixed);
         match columns.len() {

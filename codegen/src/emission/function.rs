@@ -7,7 +7,7 @@ use super::boundary::boundary;
 use super::expression::{self, Writer, array_type, ident};
 use super::lanes::{self, Work};
 use super::layout::Sections;
-use crate::lowering::Pays;
+use crate::lowering::{Pays, Program};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
@@ -104,14 +104,14 @@ fn straight(
     let written = expression::write(&writer, &body, output);
     let (statements, value) = (written.statements, written.value);
     let value = quote!(::core::result::Result::Ok(#value));
-    let run = match outline.is_placed() {
-        true => quote!(::overact::roomiest),
-        false => quote!(::overact::widest),
+    let (run, copies) = match outline.is_placed() {
+        true => (quote!(::overact::roomiest), copies(program)),
+        false => (quote!(::overact::widest), TokenStream::new()),
     };
     let (statements, value) = match is_wide {
         true => (
             before,
-            quote!(#run(#[inline(always)] || { #statements #value })),
+            quote!(#run(#[inline(always)] || { #copies #statements #value })),
         ),
         false => (quote!(#before #statements), value),
     };
@@ -122,6 +122,19 @@ fn straight(
             starts: body.sections,
         },
         names: body.names,
+    }
+}
+
+/// Inputs as values, for what is written in between might stand in their place as far as the compiler knows: inside a
+/// closure it has forgotten that references are of different things.
+fn copies(program: &Program) -> TokenStream {
+    let inputs = program.inputs.iter().zip(program.used_inputs());
+    let used = inputs.filter(|(_, is_used)| *is_used);
+    let names: Vec<_> = used.map(|(input, _)| ident(&input.name)).collect();
+    match &names[..] {
+        [] => TokenStream::new(),
+        [name] => quote!(let #name = *#name;),
+        _ => quote!(let (#(#names),*) = (#(*#names),*);),
     }
 }
 

@@ -3,7 +3,8 @@
 //! A processor has sixteen registers, or thirty-two. A value that waits longer for its last use is written to the stack,
 //! and of a model's hundreds of results many are made of the same velocities and accelerations. Which of them is computed
 //! next is therefore chosen by how many values wait after it: the one that leaves the fewest, of equal ones the first
-//! column by column. The steps and their results stay what they are.
+//! column by column. What conditions are on comes first, of all legs: their roots and quotients take long, and do so side
+//! by side as long as no result of another leg is written between them. The steps and their results stay what they are.
 
 use super::program::{Operand, Operation, Program};
 use std::collections::BTreeSet;
@@ -12,10 +13,14 @@ use std::collections::BTreeSet;
 #[must_use]
 pub(crate) fn few_waiting(program: &Program) -> Program {
     let mut order = Order::new(program);
-    while let Some(next) = order.cheapest() {
-        order.compute(next);
+    let guarded = program.guards.iter();
+    for step in guarded.filter_map(|guard| step(guard.operand)) {
+        order.compute(step);
     }
-    order.rest();
+    while let Some(next) = order.cheapest() {
+        order.results[next].is_written = true;
+        order.compute(order.results[next].step);
+    }
     renumbered(program, &order.steps)
 }
 
@@ -107,31 +112,20 @@ impl<'p> Order<'p> {
         .sum()
     }
 
-    /// Computes a result, and forgets the costs that this changes.
-    fn compute(&mut self, at: usize) {
-        let cone = self.cone(self.results[at].step);
-        self.results[at].is_written = true;
+    /// Computes a step for a result or a condition, and forgets the costs that this changes.
+    fn compute(&mut self, step: usize) {
+        let cone = self.cone(step);
         for &(step, uses) in &cone.uses {
             self.left[step] -= uses;
             for concerned in std::mem::take(&mut self.concerned[step]) {
                 self.results[concerned].waiting = None;
             }
         }
-        self.extend(cone.new);
-    }
-
-    /// Computes what conditions alone need.
-    fn rest(&mut self) {
-        let rest = (0..self.is_done.len()).filter(|&at| !self.is_done[at]);
-        self.extend(rest.collect());
-    }
-
-    /// Puts steps, of which none is done, behind those before.
-    fn extend(&mut self, new: BTreeSet<usize>) {
-        for &at in &new {
-            self.is_done[at] = true;
+        for &step in &cone.new {
+            self.is_done[step] = true;
         }
-        self.steps.extend(new);
+        // As they were, operands stand first.
+        self.steps.extend(cone.new);
     }
 
     /// What is to be computed for a result.

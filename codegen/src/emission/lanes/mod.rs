@@ -34,8 +34,8 @@ pub(super) struct Loop {
 const FEW: usize = 4;
 
 /// Names that the loop has for itself.
-const RESERVED: [&str; 9] = [
-    "at", "added", "failed", "lanes", "own", "rows", "sums", "solution", "output",
+const RESERVED: [&str; 10] = [
+    "at", "added", "failed", "lanes", "own", "rows", "sums", "solution", "output", "place",
 ];
 
 /// The body of a function in lanes, which stands in a function of this name.
@@ -63,6 +63,7 @@ pub(super) fn write(
         }
     };
     let Parts {
+        zeros,
         before,
         of_legs,
         after,
@@ -78,6 +79,7 @@ pub(super) fn write(
     let (shared, own) = (&split.shared, &split.own);
     let statements = quote! {
         #constants
+        #zeros
         #(#shared)*
         #before
         #tables
@@ -149,6 +151,8 @@ fn places(lanes: &Lanes) -> TokenStream {
 
 /// What stands around the statements of the legs.
 struct Parts {
+    /// Before all else: the zeros of the output, or the output itself.
+    zeros: TokenStream,
     /// In front of the loop.
     before: TokenStream,
     /// At the end of each turn.

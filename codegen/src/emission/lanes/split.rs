@@ -3,9 +3,9 @@
 use super::{Parts, home, unsuffixed};
 use crate::emission::expression::{Writer, number};
 use crate::float::Float;
-use crate::lowering::{Column, Condition, Elements, Lanes};
+use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
 use crate::writing::statement::{Expression, Pair, Statement};
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::HashSet;
 
@@ -122,44 +122,92 @@ impl<'a> Split<'a> {
     /// Columns of the output in their places.
     pub(super) fn columns(&self, places: &[Column], values: &[Expression]) -> Parts {
         let (mut of_all, mut of_legs) = (Vec::new(), Vec::new());
+        let shape = &self.lanes.output.shape;
+        let mut is_written = vec![vec![false; shape[1]]; shape[0]];
         for (at, value) in values.iter().enumerate() {
             if is_zero(value) {
                 continue;
             }
+            let written = &mut is_written[at / places.len()];
             let row = unsuffixed(at / places.len());
             match places[at % places.len()] {
                 Column::Shared(column) => {
+                    written[column] = true;
                     let (column, value) = (unsuffixed(column), self.shared_writer.tokens(value));
                     of_all.push(quote!(output[#row][#column] = #value;));
                 }
                 Column::OfLegs(place) => {
-                    let value = self.own_writer.tokens(value);
-                    let [first, stride, count] =
-                        [place.first, place.stride, place.count].map(unsuffixed);
-                    let row = quote!(&mut output[#row]);
-                    of_legs.push(match place.count == self.lanes.legs.len() {
-                        true => {
-                            quote!(::overact::lanes::put(#row, [#first, #stride], at, #value);)
-                        }
-                        false => {
-                            let place = quote!([#first, #stride]);
-                            quote!(::overact::lanes::put_of_first(#row, #place, #count, at, #value);)
-                        }
-                    });
+                    let legs = 0..self.lanes.legs.len();
+                    legs.filter_map(|leg| place.of(leg))
+                        .for_each(|column| written[column] = true);
+                    of_legs.push(self.of_legs(&row, place, value));
                 }
             }
         }
-        let shape = &self.lanes.output.shape;
-        let (rows, columns) = (unsuffixed(shape[0]), unsuffixed(shape[1]));
+        let (zeros, after) = match are_scattered(places) {
+            true => local(shape),
+            false => (zeros(&is_written), TokenStream::new()),
+        };
         Parts {
-            before: quote! {
-                *output = [[0.0; #columns]; #rows];
-                #(#of_all)*
-            },
+            zeros,
+            before: quote!(#(#of_all)*),
             of_legs: quote!(#(#of_legs)*),
-            after: TokenStream::new(),
+            after,
         }
     }
+
+    /// A number of a row for each leg.
+    fn of_legs(&self, row: &Literal, place: OfLegs, value: &Expression) -> TokenStream {
+        let value = self.own_writer.tokens(value);
+        let [first, stride, count] = [place.first, place.stride, place.count].map(unsuffixed);
+        let row = quote!(&mut output[#row]);
+        match place.count == self.lanes.legs.len() {
+            true => quote!(::overact::lanes::put(#row, [#first, #stride], at, #value);),
+            false => {
+                let place = quote!([#first, #stride]);
+                quote!(::overact::lanes::put_of_first(#row, #place, #count, at, #value);)
+            }
+        }
+    }
+}
+
+/// Whether a column of all legs is mostly not one vector: each leg has its columns side by side instead.
+fn are_scattered(places: &[Column]) -> bool {
+    let of_legs = places.iter().filter_map(|place| match place {
+        Column::OfLegs(place) => Some(place.stride != 1),
+        Column::Shared(_) => None,
+    });
+    let (apart, side_by_side): (Vec<bool>, Vec<bool>) = of_legs.partition(|&apart| apart);
+    apart.len() > side_by_side.len()
+}
+
+/// The output as a matrix of the function's own, which goes to its place at the end: compilers keep it in registers and
+/// write what stands side by side at once, where numbers that lie apart would be written one by one.
+fn local(shape: &[usize]) -> (TokenStream, TokenStream) {
+    let (rows, columns) = (unsuffixed(shape[0]), unsuffixed(shape[1]));
+    let begin = quote! {
+        let place = output;
+        let mut output = [[0.0; #columns]; #rows];
+    };
+    (begin, quote!(*place = output;))
+}
+
+/// Zeros where nothing else is written.
+fn zeros(is_written: &[Vec<bool>]) -> TokenStream {
+    let zero = Expression::Number(0.0);
+    let writer = Writer::new(&[], Float::F64);
+    let mut zeros = Vec::new();
+    for (row, is_written) in is_written.iter().enumerate() {
+        let mut first = 0;
+        for same in is_written.chunk_by(|a, b| a == b) {
+            let columns = first..first + same.len();
+            first = columns.end;
+            if !same[0] {
+                zeros.push(writer.place(row, &columns, &zero));
+            }
+        }
+    }
+    quote!(#(#zeros)*)
 }
 
 /// Whether a value is zero whatever the inputs are.

@@ -88,6 +88,7 @@ pub(super) fn parts(
     });
     let tables = &tables[..if sums.rows == LegRows::None { 1 } else { 2 }];
     Parts {
+        zeros: TokenStream::new(),
         before: quote!(#(#tables)*),
         of_legs: quote!(#adding #owning),
         after: quote! {

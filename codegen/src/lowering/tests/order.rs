@@ -1,7 +1,7 @@
 //! The order in which few values wait for their last use.
 
 use crate::lowering::few_waiting;
-use crate::lowering::program::{Array, Entry, Operand, Operation, Program, Step};
+use crate::lowering::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
 
 /// Element of the one input.
 fn input(index: usize) -> Operand {
@@ -84,4 +84,32 @@ fn sine_and_cosine_stay_together() {
     let cosine = at(Operation::Cosine(step(0))).expect("a cosine");
     assert_eq!(at(Operation::Sine(step(0))), Some(cosine + 1));
     assert_eq!(after.verify(), Ok(()));
+}
+
+#[test]
+fn what_conditions_are_on_comes_first() {
+    let step = Operand::Step;
+    let steps = [
+        Operation::Mul(input(0), input(1)),
+        Operation::Mul(input(2), input(3)),
+        Operation::Div(input(0), step(1)),
+    ];
+    let mut before = program([1, 2], &steps, &[0, 2]);
+    before.guards.push(Guard {
+        operand: step(1),
+        condition: Condition::Mass,
+    });
+    let after = few_waiting(&before);
+    assert_eq!(after.steps[0].operation, steps[1]);
+    assert_eq!(after.guards[0].operand, step(0));
+    assert_eq!(after.verify(), Ok(()));
+}
+
+#[test]
+fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
+    let steps = [Operation::Mul(input(0), input(1))];
+    let mut before = program([2, 2], &steps, &[0, 0, 0, 0]);
+    before.entries[1] = Entry::positive(Operand::Constant(0.0));
+    before.entries[2] = Entry::positive(input(3)).times(true);
+    assert_eq!(few_waiting(&before), before);
 }
