@@ -257,7 +257,8 @@ fn shortened(name: &str, duration: &str) -> String {
 /// A tree of one joint and one of six, a closed loop, a robot with a guided slider and a redundant one.
 const SMALL: [&str; 5] = ["emps", "five_bar", "rx90", "scotch_yoke", "three_leg_point"];
 
-/// Those and every second robot in the full tier, all at night. That all are generated and compiled is seen in `overact-tests`, in either tier.
+/// Those and every second robot in the full tier, all at night. That all are generated and compiled is seen in
+/// `overact-tests`, in any tier.
 fn robots_of_the_tier() -> Vec<String> {
     let of_many = of_many(robots()).into_iter();
     let others = of_many.filter(|name| !SMALL.contains(&name.as_str()));
