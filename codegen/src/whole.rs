@@ -180,14 +180,16 @@ impl RobotModel {
             whole.once.additions += self.mechanism.pose_len();
             whole.once.guards += self.mechanism.pose_len();
         }
-        let mut step = WholeCost::from(displacement(r, self.has_quaternion()));
+        // A platform that moves aside is displaced by all six components.
+        let moved = if self.mechanism.is_parasitic() { 6 } else { r };
+        let mut step = WholeCost::from(displacement(moved, self.has_quaternion()));
         // The bounds of the next step.
         step.once.multiplications += 3;
         if self.mechanism.is_parasitic() {
             // One step back onto the closures; where steps are short it is enough.
             let blocked = 6 - r;
             step.call(WholeCost::from(elimination(blocked)));
-            step.call(WholeCost::from(displacement(6, true)));
+            step.call(WholeCost::from(displacement(moved, true)));
             step.call(self.of(Function::BlockedError, MotionInput::Pose));
             step.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
         }
@@ -263,12 +265,11 @@ fn displacement(r: usize, quaternion: bool) -> Cost {
             additions: r,
             ..Cost::default()
         },
+        // The position, the turn's square, two series, the product, and the length that is 1 but for rounding.
         true => Cost {
-            additions: 3 + 2 + 12 + 3,
-            multiplications: 3 + 1 + 3 + 16 + 4,
-            divisions: 1 + 4,
-            square_roots: 2,
-            trigonometric_pairs: 1,
+            additions: (r - 3) + 2 + 6 + 12 + 5,
+            multiplications: 3 + 6 + 3 + 16 + 9,
+            guards: 2,
             ..Cost::default()
         },
     }

@@ -2123,10 +2123,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2164,15 +2164,15 @@ impl DualV {
                     + s_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                output[0][61] = -minus_mx_platform_on_vx;
+                output[0][61] = -minus_mx_platform_on_vx; // mx_platform
                 output[0][62] = my_platform_on_vx;
-                output[0][63] = acceleration[0];
-                output[1][61] = -my_platform_on_vx;
-                output[1][62] = -minus_mx_platform_on_vx;
-                output[1][63] = acceleration[1];
-                output[2][60] = acceleration[2];
-                output[2][61] = a_y_platform;
-                output[2][62] = -a_x_platform;
+                output[0][63] = acceleration[0]; // m_platform
+                output[1][61] = -my_platform_on_vx; // mx_platform
+                output[1][62] = -minus_mx_platform_on_vx; // my_platform
+                output[1][63] = acceleration[1]; // m_platform
+                output[2][60] = acceleration[2]; // zz_platform
+                output[2][61] = a_y_platform; // mx_platform
+                output[2][62] = -a_x_platform; // my_platform
                 /// Numbers in which the legs differ: a row for each, in it one for each leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
@@ -2525,12 +2525,12 @@ impl DualV {
         const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
         /// 2 l_ab²
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-        output[0][60] = 0.0;
-        output[0][63] = acceleration[0];
-        output[1][60] = 0.0;
-        output[1][63] = acceleration[1];
-        output[2][60] = acceleration[2];
-        output[2][63] = 0.0;
+        output[0][60] = 0.0; // zz_platform
+        output[0][63] = acceleration[0]; // m_platform
+        output[1][60] = 0.0; // zz_platform
+        output[1][63] = acceleration[1]; // m_platform
+        output[2][60] = acceleration[2]; // zz_platform
+        output[2][63] = 0.0; // m_platform
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
@@ -2581,179 +2581,179 @@ impl DualV {
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][61] = a_y_platform;
+        output[2][61] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][62] = -a_x_platform;
+        output[2][62] = -a_x_platform; // my_platform
         // --- leg1
         let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
         let k1_leg1 = 1.0 / det_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        output[0][14] = minus_g2_vx_leg1;
+        output[0][14] = minus_g2_vx_leg1; // off_3_leg1
         let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        output[1][14] = minus_g2_vy_leg1;
+        output[1][14] = minus_g2_vy_leg1; // off_3_leg1
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        output[0][4] = g1_vx_leg1;
+        output[0][4] = g1_vx_leg1; // off_1_leg1
         let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-        output[0][11] = -minus_gq2_vx_leg1;
+        output[0][11] = -minus_gq2_vx_leg1; // off_2_leg1
         // --- leg2
         let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        output[0][29] = -g2_vx_leg2;
+        output[0][29] = -g2_vx_leg2; // off_3_leg2
         let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-        output[1][29] = -g2_vy_leg2;
+        output[1][29] = -g2_vy_leg2; // off_3_leg2
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        output[0][19] = -minus_g1_vx_leg2;
+        output[0][19] = -minus_g1_vx_leg2; // off_1_leg2
         let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        output[0][26] = gq2_vx_leg2;
+        output[0][26] = gq2_vx_leg2; // off_2_leg2
         let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-        output[1][41] = -minus_gq2_vy_leg3;
+        output[1][41] = -minus_gq2_vy_leg3; // off_2_leg3
         // --- leg4
         let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        output[0][59] = -g2_vx_leg4;
+        output[0][59] = -g2_vx_leg4; // off_3_leg4
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-        output[1][59] = -g2_vy_leg4;
+        output[1][59] = -g2_vy_leg4; // off_3_leg4
         // --- leg3
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
-        output[1][44] = minus_g2_vy_leg3;
+        output[1][44] = minus_g2_vy_leg3; // off_3_leg3
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-        output[0][34] = g1_vx_leg3;
+        output[0][34] = g1_vx_leg3; // off_1_leg3
         let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
-        output[1][34] = g1_vy_leg3;
+        output[1][34] = g1_vy_leg3; // off_1_leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        output[2][34] = g1_wz_leg3;
+        output[2][34] = g1_wz_leg3; // off_1_leg3
         let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-        output[0][44] = minus_g2_vx_leg3;
+        output[0][44] = minus_g2_vx_leg3; // off_3_leg3
         let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        output[0][41] = -minus_gq2_vx_leg3;
+        output[0][41] = -minus_gq2_vx_leg3; // off_2_leg3
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        output[0][49] = -minus_g1_vx_leg4;
+        output[0][49] = -minus_g1_vx_leg4; // off_1_leg4
         let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-        output[0][56] = gq2_vx_leg4;
+        output[0][56] = gq2_vx_leg4; // off_2_leg4
         // --- leg1
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        output[1][4] = g1_vy_leg1;
+        output[1][4] = g1_vy_leg1; // off_1_leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        output[2][4] = -minus_g1_wz_leg1;
+        output[2][4] = -minus_g1_wz_leg1; // off_1_leg1
         let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        output[1][11] = -minus_gq2_vy_leg1;
+        output[1][11] = -minus_gq2_vy_leg1; // off_2_leg1
         // --- leg2
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        output[1][19] = -minus_g1_vy_leg2;
+        output[1][19] = -minus_g1_vy_leg2; // off_1_leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        output[2][19] = g1_wz_leg2;
+        output[2][19] = g1_wz_leg2; // off_1_leg2
         let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        output[1][26] = gq2_vy_leg2;
+        output[1][26] = gq2_vy_leg2; // off_2_leg2
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-        output[2][11] = gq2_wz_leg1;
+        output[2][11] = gq2_wz_leg1; // off_2_leg1
         let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-        output[2][14] = gq3_wz_leg1;
+        output[2][14] = gq3_wz_leg1; // off_3_leg1
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-        output[2][26] = -minus_gq2_wz_leg2;
+        output[2][26] = -minus_gq2_wz_leg2; // off_2_leg2
         let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        output[2][29] = gq3_wz_leg2;
+        output[2][29] = gq3_wz_leg2; // off_3_leg2
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
         let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        output[2][41] = -minus_gq2_wz_leg3;
+        output[2][41] = -minus_gq2_wz_leg3; // off_2_leg3
         let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-        output[2][44] = gq3_wz_leg3;
+        output[2][44] = gq3_wz_leg3; // off_3_leg3
         // --- leg4
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        output[1][49] = -minus_g1_vy_leg4;
+        output[1][49] = -minus_g1_vy_leg4; // off_1_leg4
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        output[2][49] = -minus_g1_wz_leg4;
+        output[2][49] = -minus_g1_wz_leg4; // off_1_leg4
         let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-        output[1][56] = gq2_vy_leg4;
+        output[1][56] = gq2_vy_leg4; // off_2_leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        output[2][56] = gq2_wz_leg4;
+        output[2][56] = gq2_wz_leg4; // off_2_leg4
         let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-        output[2][59] = gq3_wz_leg4;
+        output[2][59] = gq3_wz_leg4; // off_3_leg4
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][61] = -minus_mx_platform_on_vx;
-        output[1][62] = -minus_mx_platform_on_vx;
+        output[0][61] = -minus_mx_platform_on_vx; // mx_platform
+        output[1][62] = -minus_mx_platform_on_vx; // my_platform
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
         output[0][62] = my_platform_on_vx;
-        output[1][61] = -my_platform_on_vx;
+        output[1][61] = -my_platform_on_vx; // mx_platform
         let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        output[0][2] = g1_vx_leg1 * rate_1_leg1;
-        output[1][2] = g1_vy_leg1 * rate_1_leg1;
-        output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
-        output[0][3] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
-        output[1][3] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
-        output[2][3] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
+        output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+        output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+        output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+        output[0][3] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+        output[1][3] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+        output[2][3] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
-        output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
-        output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
-        output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
-        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
-        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
-        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
+        output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
+        output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
+        output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
+        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        output[0][32] = g1_vx_leg3 * rate_1_leg3;
-        output[1][32] = g1_vy_leg3 * rate_1_leg3;
-        output[2][32] = g1_wz_leg3 * rate_1_leg3;
-        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
-        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
-        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+        output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+        output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
-        output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-        output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-        output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
-        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
-        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
+        output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
-        output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
-        output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
+        output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
+        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
+        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
+        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        output[0][24] = qd_2_leg2 * gq2_vx_leg2;
-        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
-        output[1][24] = qd_2_leg2 * gq2_vy_leg2;
-        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
-        output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2);
-        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
+        output[0][24] = qd_2_leg2 * gq2_vx_leg2; // fv_2_leg2
+        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+        output[1][24] = qd_2_leg2 * gq2_vy_leg2; // fv_2_leg2
+        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+        output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2); // fv_2_leg2
+        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
-        output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
-        output[2][12] = qd_3_leg1 * gq3_wz_leg1;
-        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
-        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
-        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+        output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+        output[2][12] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
+        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
         let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -2765,7 +2765,7 @@ impl DualV {
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
         let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
         output[0][0] = zz_1_leg1_on_vx;
-        output[0][1] = zz_1_leg1_on_vx;
+        output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
@@ -2773,7 +2773,7 @@ impl DualV {
         let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         output[0][5] = zz_2_leg1_on_vx;
         let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-        output[0][6] = inv_l_ab_a_end_x_leg1
+        output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
             - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
         // --- leg2
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
@@ -2785,75 +2785,75 @@ impl DualV {
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
         let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
         output[0][15] = zz_1_leg2_on_vx;
-        output[0][16] = zz_1_leg2_on_vx;
+        output[0][16] = zz_1_leg2_on_vx; // ia_1_leg2
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
         output[0][20] = zz_2_leg2_on_vx;
-        output[0][21] = inv_l_ab_a_end_x_leg1
+        output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
             - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
         let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1;
+        output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-        output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+        output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + g2_vx_leg2 * a2_x_leg2);
-        output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
-        output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1;
-        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+        output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
+        output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
             + g2_wz_leg1 * a2_x_leg1);
         // --- leg1
         let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
         output[1][0] = zz_1_leg1_on_vy;
-        output[1][1] = zz_1_leg1_on_vy;
+        output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
         let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        output[2][0] = -minus_zz_1_leg1_on_wz;
-        output[2][1] = -minus_zz_1_leg1_on_wz;
+        output[2][0] = -minus_zz_1_leg1_on_wz; // zz_1_leg1
+        output[2][1] = -minus_zz_1_leg1_on_wz; // ia_1_leg1
         let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         output[1][5] = zz_2_leg1_on_vy;
         let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        output[2][5] = -minus_zz_2_leg1_on_wz;
+        output[2][5] = -minus_zz_2_leg1_on_wz; // zz_2_leg1
         let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-        output[1][6] = inv_l_ab_a_end_y_leg1
+        output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
             - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
-        output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
-        output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
+        output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
+        output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
         let r_p_dwz = R_P * acceleration[2];
         let a3_x_leg1 = r_p_dwz - a_x_platform;
         let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-        output[2][6] = r_p_per_l_ab_a3_x_leg1
+        output[2][6] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg1
             + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
-        output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
-        output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+        output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
+        output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + g2_vy_leg2 * a2_x_leg2);
-        output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+        output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + minus_g2_wz_leg2 * a2_x_leg2;
         // --- leg2
         let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        output[2][15] = -minus_zz_1_leg2_on_wz;
-        output[2][16] = -minus_zz_1_leg2_on_wz;
+        output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
+        output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
         let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        output[2][20] = -minus_zz_2_leg2_on_wz;
-        output[2][21] = r_p_per_l_ab_a3_x_leg1
+        output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
+        output[2][21] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg2
             + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
         let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         output[1][15] = zz_1_leg2_on_vy;
-        output[1][16] = zz_1_leg2_on_vy;
+        output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
         let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
         output[1][20] = zz_2_leg2_on_vy;
-        output[1][21] = inv_l_ab_a_end_y_leg1
+        output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
             - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
-        output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
-        output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
+        output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
+        output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
         let qd_3_leg2 = twist[2] - rate_2_leg2;
-        output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
-        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
-        output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
-        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
-        output[2][27] = qd_3_leg2 * gq3_wz_leg2;
-        output[2][28] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
+        output[0][27] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
+        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+        output[1][27] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
+        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+        output[2][27] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
+        output[2][28] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
         // --- leg3
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
@@ -2869,7 +2869,7 @@ impl DualV {
             / det_leg3;
         let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
         output[2][30] = zz_1_leg3_on_wz;
-        output[2][31] = zz_1_leg3_on_wz;
+        output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
@@ -2878,11 +2878,11 @@ impl DualV {
         output[2][35] = zz_2_leg3_on_wz;
         let a3_x_leg3 = a_x_platform + r_p_dwz;
         let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
-        output[2][36] = r_p_per_l_ab_a3_x_leg3
+        output[2][36] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg3
             - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
         let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_wz_leg3 * a2_x_leg3;
         // --- leg4
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
@@ -2895,90 +2895,90 @@ impl DualV {
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
         let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
         output[2][45] = zz_1_leg4_on_wz;
-        output[2][46] = zz_1_leg4_on_wz;
+        output[2][46] = zz_1_leg4_on_wz; // ia_1_leg4
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg4;
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
         output[2][50] = zz_2_leg4_on_wz;
-        output[2][51] = r_p_per_l_ab_a3_x_leg3
+        output[2][51] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg4
             - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
         let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_wz_leg4 * a2_x_leg4);
-        output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
-        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+        output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
+        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_vx_leg3 * a2_x_leg3;
-        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_vy_leg3 * a2_x_leg3;
         let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
         output[0][30] = zz_1_leg3_on_vx;
-        output[0][31] = zz_1_leg3_on_vx;
+        output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
         let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
         output[1][30] = zz_1_leg3_on_vy;
-        output[1][31] = zz_1_leg3_on_vy;
-        output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+        output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
+        output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
         let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         output[0][35] = zz_2_leg3_on_vx;
         let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-        output[0][36] = inv_l_ab_a_end_x_leg3
+        output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
             - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
         let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         output[1][35] = zz_2_leg3_on_vy;
         let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-        output[1][36] = inv_l_ab_a_end_y_leg3
+        output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
             - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
-        output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+        output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
-        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
-        output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
-        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
-        output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
+        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
+        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
+        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
-        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
-        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
-        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
-        output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
-        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
+        output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
+        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+        output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
+        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_vx_leg4 * a2_x_leg4);
-        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_vy_leg4 * a2_x_leg4);
         let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
         output[0][45] = zz_1_leg4_on_vx;
-        output[0][46] = zz_1_leg4_on_vx;
+        output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
         let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
         output[1][45] = zz_1_leg4_on_vy;
-        output[1][46] = zz_1_leg4_on_vy;
+        output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
         let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
         output[0][50] = zz_2_leg4_on_vx;
-        output[0][51] = inv_l_ab_a_end_x_leg3
+        output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
             - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
         let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
         output[1][50] = zz_2_leg4_on_vy;
-        output[1][51] = inv_l_ab_a_end_y_leg3
+        output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
             - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
-        output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
-        output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+        output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
+        output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        output[0][54] = qd_2_leg4 * gq2_vx_leg4;
-        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
-        output[1][54] = qd_2_leg4 * gq2_vy_leg4;
-        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
-        output[2][54] = qd_2_leg4 * gq2_wz_leg4;
-        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
+        output[0][54] = qd_2_leg4 * gq2_vx_leg4; // fv_2_leg4
+        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+        output[1][54] = qd_2_leg4 * gq2_vy_leg4; // fv_2_leg4
+        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+        output[2][54] = qd_2_leg4 * gq2_wz_leg4; // fv_2_leg4
+        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
         let qd_3_leg4 = twist[2] - rate_2_leg4;
-        output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
-        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
-        output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
-        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
-        output[2][57] = qd_3_leg4 * gq3_wz_leg4;
-        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
+        output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+        output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+        output[2][57] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
+        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -3010,10 +3010,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -3046,12 +3046,12 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// r_p² / l_ab
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
-            output[0][60] = 0.0;
-            output[0][63] = acceleration[0];
-            output[1][60] = 0.0;
-            output[1][63] = acceleration[1];
-            output[2][60] = acceleration[2];
-            output[2][63] = 0.0;
+            output[0][60] = 0.0; // zz_platform
+            output[0][63] = acceleration[0]; // m_platform
+            output[1][60] = 0.0; // zz_platform
+            output[1][63] = acceleration[1]; // m_platform
+            output[2][60] = acceleration[2]; // zz_platform
+            output[2][63] = 0.0; // m_platform
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
@@ -3064,189 +3064,189 @@ impl DualV {
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[2][61] = a_y_platform;
+            output[2][61] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            output[2][62] = -a_x_platform;
+            output[2][62] = -a_x_platform; // my_platform
             // --- leg1
             let k1_leg1 = INV_L_AB / s2_leg1;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            output[0][14] = minus_g2_vx_leg1;
+            output[0][14] = minus_g2_vx_leg1; // off_3_leg1
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            output[1][14] = minus_g2_vy_leg1;
+            output[1][14] = minus_g2_vy_leg1; // off_3_leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            output[0][4] = g1_vx_leg1;
+            output[0][4] = g1_vx_leg1; // off_1_leg1
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            output[1][4] = g1_vy_leg1;
+            output[1][4] = g1_vy_leg1; // off_1_leg1
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
-            output[2][4] = -minus_g1_wz_leg1;
+            output[2][4] = -minus_g1_wz_leg1; // off_1_leg1
             let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][11] = -minus_gq2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1; // off_2_leg1
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][11] = -minus_gq2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1; // off_2_leg1
             let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
                 + minus_g2_vx_leg1 * p_y_leg1;
             let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][11] = gq2_wz_leg1;
+            output[2][11] = gq2_wz_leg1; // off_2_leg1
             let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][14] = gq3_wz_leg1;
+            output[2][14] = gq3_wz_leg1; // off_3_leg1
             // --- leg2
             let k1_leg2 = INV_L_AB / s2_leg2;
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
-            output[0][29] = minus_g2_vx_leg2;
+            output[0][29] = minus_g2_vx_leg2; // off_3_leg2
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
-            output[1][29] = minus_g2_vy_leg2;
+            output[1][29] = minus_g2_vy_leg2; // off_3_leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            output[0][19] = g1_vx_leg2;
+            output[0][19] = g1_vx_leg2; // off_1_leg2
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            output[1][19] = g1_vy_leg2;
+            output[1][19] = g1_vy_leg2; // off_1_leg2
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
-            output[2][19] = -minus_g1_wz_leg2;
+            output[2][19] = -minus_g1_wz_leg2; // off_1_leg2
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            output[0][26] = -minus_gq2_vx_leg2;
+            output[0][26] = -minus_gq2_vx_leg2; // off_2_leg2
             let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
-            output[1][26] = -minus_gq2_vy_leg2;
+            output[1][26] = -minus_gq2_vy_leg2; // off_2_leg2
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
             let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
-            output[2][26] = gq2_wz_leg2;
+            output[2][26] = gq2_wz_leg2; // off_2_leg2
             let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
-            output[2][29] = gq3_wz_leg2;
+            output[2][29] = gq3_wz_leg2; // off_3_leg2
             // --- leg3
             let k1_leg3 = INV_L_AB / s2_leg3;
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
-            output[0][44] = minus_g2_vx_leg3;
+            output[0][44] = minus_g2_vx_leg3; // off_3_leg3
             let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
-            output[1][44] = minus_g2_vy_leg3;
+            output[1][44] = minus_g2_vy_leg3; // off_3_leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let g1_vx_leg3 = c12_leg3 * k1_leg3;
-            output[0][34] = g1_vx_leg3;
+            output[0][34] = g1_vx_leg3; // off_1_leg3
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            output[1][34] = g1_vy_leg3;
+            output[1][34] = g1_vy_leg3; // off_1_leg3
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][34] = g1_wz_leg3;
+            output[2][34] = g1_wz_leg3; // off_1_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][41] = -minus_gq2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3; // off_2_leg3
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            output[1][41] = -minus_gq2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3; // off_2_leg3
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][41] = -minus_gq2_wz_leg3;
+            output[2][41] = -minus_gq2_wz_leg3; // off_2_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][44] = gq3_wz_leg3;
+            output[2][44] = gq3_wz_leg3; // off_3_leg3
             // --- leg4
             let k1_leg4 = INV_L_AB / s2_leg4;
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
-            output[0][59] = minus_g2_vx_leg4;
+            output[0][59] = minus_g2_vx_leg4; // off_3_leg4
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
-            output[1][59] = minus_g2_vy_leg4;
+            output[1][59] = minus_g2_vy_leg4; // off_3_leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let g1_vx_leg4 = c12_leg4 * k1_leg4;
-            output[0][49] = g1_vx_leg4;
+            output[0][49] = g1_vx_leg4; // off_1_leg4
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
             let g1_vy_leg4 = s12_leg4 * k1_leg4;
-            output[1][49] = g1_vy_leg4;
+            output[1][49] = g1_vy_leg4; // off_1_leg4
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-            output[2][49] = g1_wz_leg4;
+            output[2][49] = g1_wz_leg4; // off_1_leg4
             let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
-            output[0][56] = -minus_gq2_vx_leg4;
+            output[0][56] = -minus_gq2_vx_leg4; // off_2_leg4
             let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
-            output[1][56] = -minus_gq2_vy_leg4;
+            output[1][56] = -minus_gq2_vy_leg4; // off_2_leg4
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
             let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
-            output[2][56] = -minus_gq2_wz_leg4;
+            output[2][56] = -minus_gq2_wz_leg4; // off_2_leg4
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
-            output[2][59] = gq3_wz_leg4;
+            output[2][59] = gq3_wz_leg4; // off_3_leg4
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][61] = -minus_mx_platform_on_vx;
-            output[1][62] = -minus_mx_platform_on_vx;
+            output[0][61] = -minus_mx_platform_on_vx; // mx_platform
+            output[1][62] = -minus_mx_platform_on_vx; // my_platform
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
-            output[1][61] = -my_platform_on_vx;
+            output[1][61] = -my_platform_on_vx; // mx_platform
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = g1_vx_leg1 * rate_1_leg1;
-            output[1][2] = g1_vy_leg1 * rate_1_leg1;
-            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
-            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
-            output[2][3] = -::overact::math::wide::signed(
+            output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+            output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][3] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_wz_leg1,
                 rate_1_leg1,
             );
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            output[0][17] = g1_vx_leg2 * rate_1_leg2;
-            output[1][17] = g1_vy_leg2 * rate_1_leg2;
-            output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2);
-            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
-            output[2][18] = -::overact::math::wide::signed(
+            output[0][17] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][17] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
+            output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[2][18] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_wz_leg2,
                 rate_1_leg2,
             );
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][32] = g1_vx_leg3 * rate_1_leg3;
-            output[1][32] = g1_vy_leg3 * rate_1_leg3;
-            output[2][32] = g1_wz_leg3 * rate_1_leg3;
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+            output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
-            output[0][47] = g1_vx_leg4 * rate_1_leg4;
-            output[1][47] = g1_vy_leg4 * rate_1_leg4;
-            output[2][47] = g1_wz_leg4 * rate_1_leg4;
-            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
-            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
-            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
+            output[0][47] = g1_vx_leg4 * rate_1_leg4; // fv_1_leg4
+            output[1][47] = g1_vy_leg4 * rate_1_leg4; // fv_1_leg4
+            output[2][47] = g1_wz_leg4 * rate_1_leg4; // fv_1_leg4
+            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-            output[0][10] = ::overact::math::wide::signed(
+            output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
+            output[0][10] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-            output[1][10] = ::overact::math::wide::signed(
+            output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
+            output[1][10] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
             );
-            output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-            output[2][10] = -::overact::math::wide::signed(
+            output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
+            output[2][10] = -::overact::math::wide::signed( // fs_2_leg1
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
             );
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
                 + minus_g2_vy_leg2 * v_end_y_leg1;
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
-            output[0][25] = ::overact::math::wide::signed(
+            output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2; // fv_2_leg2
+            output[0][25] = ::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vx_leg2,
                 minus_qd_2_leg2,
             );
-            output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
-            output[1][25] = ::overact::math::wide::signed(
+            output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2; // fv_2_leg2
+            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vy_leg2,
                 minus_qd_2_leg2,
             );
-            output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2);
-            output[2][25] = -::overact::math::wide::signed(
+            output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
+            output[2][25] = -::overact::math::wide::signed( // fs_2_leg2
                 gq2_wz_leg2,
                 minus_qd_2_leg2,
             );
@@ -3260,7 +3260,7 @@ impl DualV {
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
-            output[0][7] = g1_vx_leg1 * a_on_f2_leg1
+            output[0][7] = g1_vx_leg1 * a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
             // --- leg2
@@ -3274,102 +3274,102 @@ impl DualV {
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
             let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
             output[0][15] = zz_1_leg2_on_vx;
-            output[0][16] = zz_1_leg2_on_vx;
+            output[0][16] = zz_1_leg2_on_vx; // ia_1_leg2
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
-            output[0][21] = inv_l_ab_a_end_x_leg1
+            output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
                 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
             // --- leg1
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
-            output[0][1] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
-            output[0][6] = inv_l_ab_a_end_x_leg1
+            output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
                 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
-            output[0][22] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][22] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
-            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
-            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
-            output[2][7] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+            output[2][7] = -(minus_g1_wz_leg1 * a_on_f2_leg1 // my_2_leg1
                 + g2_wz_leg1 * minus_a_on_f1_leg1);
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
-            output[1][1] = zz_1_leg1_on_vy;
+            output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
             let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-            output[2][0] = -minus_zz_1_leg1_on_wz;
-            output[2][1] = -minus_zz_1_leg1_on_wz;
+            output[2][0] = -minus_zz_1_leg1_on_wz; // zz_1_leg1
+            output[2][1] = -minus_zz_1_leg1_on_wz; // ia_1_leg1
             let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-            output[2][5] = -minus_zz_2_leg1_on_wz;
+            output[2][5] = -minus_zz_2_leg1_on_wz; // zz_2_leg1
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
             let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-            output[1][6] = inv_l_ab_a_end_y_leg1
+            output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
                 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
-            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
+            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
             let inv_r_p_a_x_platform = INV_R_P * a_x_platform;
             let t1_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] - inv_r_p_a_x_platform);
-            output[2][6] = t1_platform
+            output[2][6] = t1_platform // mx_2_leg1
                 + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
-            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
+            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vx_leg1,
                 qd_3_leg1,
             );
-            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
-            output[1][13] = ::overact::math::wide::signed(
+            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vy_leg1,
                 qd_3_leg1,
             );
-            output[2][12] = qd_3_leg1 * gq3_wz_leg1;
-            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
-            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
-            output[1][22] = g1_vy_leg2 * a_on_f2_leg2
+            output[2][12] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
+            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
+            output[1][22] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+            output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2 // my_2_leg2
                 + g2_wz_leg2 * minus_a_on_f1_leg2);
             // --- leg2
             let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
-            output[2][15] = -minus_zz_1_leg2_on_wz;
-            output[2][16] = -minus_zz_1_leg2_on_wz;
+            output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
+            output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
             let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
-            output[2][20] = -minus_zz_2_leg2_on_wz;
-            output[2][21] = t1_platform
+            output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
+            output[2][21] = t1_platform // mx_2_leg2
                 + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
             let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
-            output[1][16] = zz_1_leg2_on_vy;
+            output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
             let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_vy;
-            output[1][21] = inv_l_ab_a_end_y_leg1
+            output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
                 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
-            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
-            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
+            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
+            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            output[0][27] = minus_g2_vx_leg2 * qd_3_leg2;
-            output[0][28] = ::overact::math::wide::signed(
+            output[0][27] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
+            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
                 minus_g2_vx_leg2,
                 qd_3_leg2,
             );
-            output[1][27] = minus_g2_vy_leg2 * qd_3_leg2;
-            output[1][28] = ::overact::math::wide::signed(
+            output[1][27] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
+            output[1][28] = ::overact::math::wide::signed( // fs_3_leg2
                 minus_g2_vy_leg2,
                 qd_3_leg2,
             );
-            output[2][27] = qd_3_leg2 * gq3_wz_leg2;
-            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
+            output[2][27] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
+            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -3384,7 +3384,7 @@ impl DualV {
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
             output[2][30] = zz_1_leg3_on_wz;
-            output[2][31] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
@@ -3393,8 +3393,8 @@ impl DualV {
             output[2][35] = zz_2_leg3_on_wz;
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] + inv_r_p_a_x_platform);
-            output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
-            output[2][37] = g1_wz_leg3 * a_on_f2_leg3
+            output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
+            output[2][37] = g1_wz_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
             // --- leg4
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -3409,118 +3409,118 @@ impl DualV {
                 * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
             let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
             output[2][45] = zz_1_leg4_on_wz;
-            output[2][46] = zz_1_leg4_on_wz;
+            output[2][46] = zz_1_leg4_on_wz; // ia_1_leg4
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
             let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_wz;
-            output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
-            output[2][52] = g1_wz_leg4 * a_on_f2_leg4
+            output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
+            output[2][52] = g1_wz_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
-            output[0][37] = g1_vx_leg3 * a_on_f2_leg3
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
+            output[0][37] = g1_vx_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
-            output[1][37] = g1_vy_leg3 * a_on_f2_leg3
+            output[1][37] = g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
-            output[0][31] = zz_1_leg3_on_vx;
+            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
             let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
             output[1][30] = zz_1_leg3_on_vy;
-            output[1][31] = zz_1_leg3_on_vy;
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = zz_2_leg3_on_vx;
             let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3
+            output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
                 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = zz_2_leg3_on_vy;
             let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3
+            output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
                 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
-            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
-            output[0][40] = ::overact::math::wide::signed(
+            output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
+            output[0][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
-            output[1][40] = ::overact::math::wide::signed(
+            output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
+            output[1][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
             );
-            output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
+            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-            output[0][43] = ::overact::math::wide::signed(
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vx_leg3,
                 qd_3_leg3,
             );
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-            output[1][43] = ::overact::math::wide::signed(
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             );
-            output[2][42] = qd_3_leg3 * gq3_wz_leg3;
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
-            output[0][52] = g1_vx_leg4 * a_on_f2_leg4
+            output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
+            output[0][52] = g1_vx_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
-            output[1][52] = g1_vy_leg4 * a_on_f2_leg4
+            output[1][52] = g1_vy_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
             let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
-            output[0][46] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
             let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
             output[1][45] = zz_1_leg4_on_vy;
-            output[1][46] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
             let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3
+            output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
             let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
-            output[1][51] = inv_l_ab_a_end_y_leg3
+            output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
-            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
-            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
-            output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4;
-            output[0][55] = ::overact::math::wide::signed(
+            output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4; // fv_2_leg4
+            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_vx_leg4,
                 minus_qd_2_leg4,
             );
-            output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
-            output[1][55] = ::overact::math::wide::signed(
+            output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4; // fv_2_leg4
+            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_vy_leg4,
                 minus_qd_2_leg4,
             );
-            output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
-            output[2][55] = ::overact::math::wide::signed(
+            output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
+            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_wz_leg4,
                 minus_qd_2_leg4,
             );
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
-            output[0][57] = minus_g2_vx_leg4 * qd_3_leg4;
-            output[0][58] = ::overact::math::wide::signed(
+            output[0][57] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
+            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
                 minus_g2_vx_leg4,
                 qd_3_leg4,
             );
-            output[1][57] = minus_g2_vy_leg4 * qd_3_leg4;
-            output[1][58] = ::overact::math::wide::signed(
+            output[1][57] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
+            output[1][58] = ::overact::math::wide::signed( // fs_3_leg4
                 minus_g2_vy_leg4,
                 qd_3_leg4,
             );
-            output[2][57] = qd_3_leg4 * gq3_wz_leg4;
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            output[2][57] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -3554,10 +3554,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -3594,9 +3594,9 @@ impl DualV {
             const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            output[0][60] = 0.0;
-            output[1][60] = 0.0;
-            output[2][63] = 0.0;
+            output[0][60] = 0.0; // zz_platform
+            output[1][60] = 0.0; // zz_platform
+            output[2][63] = 0.0; // m_platform
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -3653,25 +3653,25 @@ impl DualV {
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            output[0][4] = g1_vx_leg1;
+            output[0][4] = g1_vx_leg1; // off_1_leg1
             // --- leg2
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            output[0][19] = -minus_g1_vx_leg2;
+            output[0][19] = -minus_g1_vx_leg2; // off_1_leg2
             // --- leg3
             let k1_leg3 = 1.0 / det_leg3;
             let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-            output[0][34] = g1_vx_leg3;
+            output[0][34] = g1_vx_leg3; // off_1_leg3
             // --- leg4
             let k1_leg4 = 1.0 / det_leg4;
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            output[0][49] = -minus_g1_vx_leg4;
+            output[0][49] = -minus_g1_vx_leg4; // off_1_leg4
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
             ::overact::guard::platform(
@@ -3684,17 +3684,17 @@ impl DualV {
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            output[1][19] = -minus_g1_vy_leg2;
+            output[1][19] = -minus_g1_vy_leg2; // off_1_leg2
             let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            output[1][4] = g1_vy_leg1;
+            output[1][4] = g1_vy_leg1; // off_1_leg1
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-            output[1][34] = g1_vy_leg3;
+            output[1][34] = g1_vy_leg3; // off_1_leg3
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            output[1][49] = -minus_g1_vy_leg4;
+            output[1][49] = -minus_g1_vy_leg4; // off_1_leg4
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
@@ -3708,14 +3708,14 @@ impl DualV {
             )?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
-            output[2][19] = g1_wz_leg2;
+            output[2][19] = g1_wz_leg2; // off_1_leg2
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            output[2][4] = -minus_g1_wz_leg1;
+            output[2][4] = -minus_g1_wz_leg1; // off_1_leg1
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][34] = g1_wz_leg3;
+            output[2][34] = g1_wz_leg3; // off_1_leg3
             let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
                 + p_y_leg1 * minus_g1_vx_leg4;
-            output[2][49] = -minus_g1_wz_leg4;
+            output[2][49] = -minus_g1_wz_leg4; // off_1_leg4
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
                 - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -3735,62 +3735,62 @@ impl DualV {
             )?;
             // --- leg1
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            output[0][14] = minus_g2_vx_leg1;
+            output[0][14] = minus_g2_vx_leg1; // off_3_leg1
             let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][11] = -minus_gq2_vx_leg1;
+            output[0][11] = -minus_gq2_vx_leg1; // off_2_leg1
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            output[1][14] = minus_g2_vy_leg1;
+            output[1][14] = minus_g2_vy_leg1; // off_3_leg1
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][11] = -minus_gq2_vy_leg1;
+            output[1][11] = -minus_gq2_vy_leg1; // off_2_leg1
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-            output[0][29] = -g2_vx_leg2;
+            output[0][29] = -g2_vx_leg2; // off_3_leg2
             let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            output[0][26] = gq2_vx_leg2;
+            output[0][26] = gq2_vx_leg2; // off_2_leg2
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-            output[1][29] = -g2_vy_leg2;
+            output[1][29] = -g2_vy_leg2; // off_3_leg2
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][26] = gq2_vy_leg2;
+            output[1][26] = gq2_vy_leg2; // off_2_leg2
             // --- leg3
             let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-            output[0][44] = minus_g2_vx_leg3;
+            output[0][44] = minus_g2_vx_leg3; // off_3_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][41] = -minus_gq2_vx_leg3;
+            output[0][41] = -minus_gq2_vx_leg3; // off_2_leg3
             let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-            output[1][44] = minus_g2_vy_leg3;
+            output[1][44] = minus_g2_vy_leg3; // off_3_leg3
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            output[1][41] = -minus_gq2_vy_leg3;
+            output[1][41] = -minus_gq2_vy_leg3; // off_2_leg3
             // --- leg4
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            output[0][59] = -g2_vx_leg4;
+            output[0][59] = -g2_vx_leg4; // off_3_leg4
             let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            output[0][56] = gq2_vx_leg4;
+            output[0][56] = gq2_vx_leg4; // off_2_leg4
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-            output[1][59] = -g2_vy_leg4;
+            output[1][59] = -g2_vy_leg4; // off_3_leg4
             let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            output[1][56] = gq2_vy_leg4;
+            output[1][56] = gq2_vy_leg4; // off_2_leg4
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
                 + p_y_leg1 * minus_g2_vx_leg1;
             let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][11] = gq2_wz_leg1;
+            output[2][11] = gq2_wz_leg1; // off_2_leg1
             let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][14] = gq3_wz_leg1;
+            output[2][14] = gq3_wz_leg1; // off_3_leg1
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            output[2][26] = -minus_gq2_wz_leg2;
+            output[2][26] = -minus_gq2_wz_leg2; // off_2_leg2
             let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-            output[2][29] = gq3_wz_leg2;
+            output[2][29] = gq3_wz_leg2; // off_3_leg2
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][41] = -minus_gq2_wz_leg3;
+            output[2][41] = -minus_gq2_wz_leg3; // off_2_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][44] = gq3_wz_leg3;
+            output[2][44] = gq3_wz_leg3; // off_3_leg3
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            output[2][56] = gq2_wz_leg4;
+            output[2][56] = gq2_wz_leg4; // off_2_leg4
             let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            output[2][59] = gq3_wz_leg4;
+            output[2][59] = gq3_wz_leg4; // off_3_leg4
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
                 + g1_vx_leg3 * actuator_velocities[2]
@@ -3812,107 +3812,107 @@ impl DualV {
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = g1_vx_leg1 * rate_1_leg1;
-            output[1][2] = g1_vy_leg1 * rate_1_leg1;
-            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1);
-            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
-            output[2][3] = -::overact::math::wide::signed(
+            output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+            output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][3] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_wz_leg1,
                 rate_1_leg1,
             );
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2;
-            output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2;
-            output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2);
-            output[0][18] = ::overact::math::wide::signed(
+            output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
+            output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
+            output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
+            output[0][18] = ::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vx_leg2,
                 minus_rate_1_leg2,
             );
-            output[1][18] = ::overact::math::wide::signed(
+            output[1][18] = ::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 minus_rate_1_leg2,
             );
-            output[2][18] = -::overact::math::wide::signed(
+            output[2][18] = -::overact::math::wide::signed( // fs_1_leg2
                 g1_wz_leg2,
                 minus_rate_1_leg2,
             );
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][32] = g1_vx_leg3 * rate_1_leg3;
-            output[1][32] = g1_vy_leg3 * rate_1_leg3;
-            output[2][32] = g1_wz_leg3 * rate_1_leg3;
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+            output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-            output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-            output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-            output[0][48] = ::overact::math::wide::signed(
+            output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][48] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_vx_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][48] = ::overact::math::wide::signed(
+            output[1][48] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_vy_leg4,
                 minus_rate_1_leg4,
             );
-            output[2][48] = ::overact::math::wide::signed(
+            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_wz_leg4,
                 minus_rate_1_leg4,
             );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = minus_gq2_vx_leg1 * minus_qd_2_leg1;
-            output[0][10] = ::overact::math::wide::signed(
+            output[0][9] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
+            output[0][10] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][9] = minus_gq2_vy_leg1 * minus_qd_2_leg1;
-            output[1][10] = ::overact::math::wide::signed(
+            output[1][9] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
+            output[1][10] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
             );
-            output[2][9] = -(gq2_wz_leg1 * minus_qd_2_leg1);
-            output[2][10] = -::overact::math::wide::signed(
+            output[2][9] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[2][10] = -::overact::math::wide::signed( // fs_2_leg1
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
             );
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][24] = gq2_vx_leg2 * qd_2_leg2;
-            output[0][25] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2);
-            output[1][24] = gq2_vy_leg2 * qd_2_leg2;
-            output[1][25] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
-            output[2][24] = -(minus_gq2_wz_leg2 * qd_2_leg2);
-            output[2][25] = -::overact::math::wide::signed(
+            output[0][24] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
+            output[0][25] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][24] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
+            output[1][25] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[2][24] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
+            output[2][25] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_wz_leg2,
                 qd_2_leg2,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1;
-            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1;
-            output[2][12] = gq3_wz_leg1 * qd_3_leg1;
-            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+            output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+            output[2][12] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
+            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vx_leg1,
                 qd_3_leg1,
             );
-            output[1][13] = ::overact::math::wide::signed(
+            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vy_leg1,
                 qd_3_leg1,
             );
             let qd_3_leg2 = wz - rate_2_leg2;
-            output[0][27] = -(g2_vx_leg2 * qd_3_leg2);
-            output[1][27] = -(g2_vy_leg2 * qd_3_leg2);
-            output[2][27] = gq3_wz_leg2 * qd_3_leg2;
-            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
-            output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2);
-            output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2);
+            output[0][27] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
+            output[1][27] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
+            output[2][27] = gq3_wz_leg2 * qd_3_leg2; // fv_3_leg2
+            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+            output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+            output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg1
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
@@ -3981,11 +3981,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            output[2][60] = dwz;
+            output[2][60] = dwz; // zz_platform
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
-            output[1][63] = dvy;
+            output[1][63] = dvy; // m_platform
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            output[0][63] = dvx;
+            output[0][63] = dvx; // m_platform
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             // --- leg3
@@ -4013,21 +4013,21 @@ impl DualV {
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
             output[2][45] = zz_1_leg4_on_wz;
-            output[2][46] = zz_1_leg4_on_wz;
+            output[2][46] = zz_1_leg4_on_wz; // ia_1_leg4
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_wz;
-            output[2][51] = r_p_per_l_ab_a3_x_leg3
+            output[2][51] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_wz_leg4 * a2_x_leg4);
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][61] = a_y_platform;
+            output[2][61] = a_y_platform; // mx_platform
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -4036,7 +4036,7 @@ impl DualV {
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
-            output[0][1] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
@@ -4044,7 +4044,7 @@ impl DualV {
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-            output[0][6] = inv_l_ab_a_end_x_leg1
+            output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
                 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
@@ -4052,179 +4052,179 @@ impl DualV {
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
             output[0][15] = zz_1_leg2_on_vx;
-            output[0][16] = zz_1_leg2_on_vx;
+            output[0][16] = zz_1_leg2_on_vx; // ia_1_leg2
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
-            output[0][21] = inv_l_ab_a_end_x_leg1
+            output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
                 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
             let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * a2_x_leg1;
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + g2_vx_leg2 * a2_x_leg2);
-            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx;
-            output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
+            output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vy_leg1 * a2_x_leg1;
-            output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + g2_wz_leg1 * a2_x_leg1);
             // --- leg1
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
-            output[1][1] = zz_1_leg1_on_vy;
+            output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
             let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
-            output[2][0] = -minus_zz_1_leg1_on_wz;
-            output[2][1] = -minus_zz_1_leg1_on_wz;
+            output[2][0] = -minus_zz_1_leg1_on_wz; // zz_1_leg1
+            output[2][1] = -minus_zz_1_leg1_on_wz; // ia_1_leg1
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
             let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
-            output[2][5] = -minus_zz_2_leg1_on_wz;
+            output[2][5] = -minus_zz_2_leg1_on_wz; // zz_2_leg1
             let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-            output[1][6] = inv_l_ab_a_end_y_leg1
+            output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
                 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
-            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy;
+            output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
             let r_p_dwz = R_P * dwz;
             let a_x_platform = a3_x_leg3 - r_p_dwz;
-            output[2][62] = -a_x_platform;
+            output[2][62] = -a_x_platform; // my_platform
             let a3_x_leg1 = r_p_dwz - a_x_platform;
             let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-            output[2][6] = r_p_per_l_ab_a3_x_leg1
+            output[2][6] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg1
                 + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
-            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz);
-            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx;
-            output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
+            output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
+            output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + g2_vy_leg2 * a2_x_leg2);
-            output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + minus_g2_wz_leg2 * a2_x_leg2;
             // --- leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
-            output[1][16] = zz_1_leg2_on_vy;
+            output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
             let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_vy;
-            output[1][21] = inv_l_ab_a_end_y_leg1
+            output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
                 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
             let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
-            output[2][15] = -minus_zz_1_leg2_on_wz;
-            output[2][16] = -minus_zz_1_leg2_on_wz;
+            output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
+            output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
             let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
-            output[2][20] = -minus_zz_2_leg2_on_wz;
-            output[2][21] = r_p_per_l_ab_a3_x_leg1
+            output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
+            output[2][21] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg2
                 + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
-            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy;
-            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz);
+            output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
+            output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
             // --- leg3
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vx_leg3 * a2_x_leg3;
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
-            output[0][31] = zz_1_leg3_on_vx;
-            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
+            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vy_leg3 * a2_x_leg3;
-            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_wz_leg3 * a2_x_leg3;
             let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
             output[2][30] = zz_1_leg3_on_wz;
-            output[2][31] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
             let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = zz_2_leg3_on_wz;
-            output[2][36] = r_p_per_l_ab_a3_x_leg3
+            output[2][36] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg3
                 - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
             let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
             output[1][30] = zz_1_leg3_on_vy;
-            output[1][31] = zz_1_leg3_on_vy;
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz;
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx;
+            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = zz_2_leg3_on_vx;
             let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3
+            output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
                 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = zz_2_leg3_on_vy;
             let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3
+            output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
                 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
-            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy;
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
-            output[0][40] = ::overact::math::wide::signed(
+            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[0][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
-            output[1][40] = ::overact::math::wide::signed(
+            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[1][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
             );
-            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-            output[0][43] = ::overact::math::wide::signed(
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vx_leg3,
                 qd_3_leg3,
             );
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-            output[1][43] = ::overact::math::wide::signed(
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             );
-            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz;
-            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
+            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_vx_leg4 * a2_x_leg4);
-            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_vy_leg4 * a2_x_leg4);
             // --- leg4
             let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
-            output[0][46] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
             let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
             output[1][45] = zz_1_leg4_on_vy;
-            output[1][46] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
             let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3
+            output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
             let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
-            output[1][51] = inv_l_ab_a_end_y_leg3
+            output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
-            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx;
-            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy;
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][54] = gq2_vx_leg4 * qd_2_leg4;
-            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
+            output[0][54] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
+            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
             let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = -(g2_vx_leg4 * qd_3_leg4);
-            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
-            output[1][54] = gq2_vy_leg4 * qd_2_leg4;
-            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
-            output[2][54] = gq2_wz_leg4 * qd_2_leg4;
-            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
-            output[1][57] = -(g2_vy_leg4 * qd_3_leg4);
-            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
-            output[2][57] = gq3_wz_leg4 * qd_3_leg4;
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][54] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
+            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+            output[2][54] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
+            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+            output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+            output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][61] = -minus_mx_platform_on_vx;
-            output[1][62] = -minus_mx_platform_on_vx;
+            output[0][61] = -minus_mx_platform_on_vx; // mx_platform
+            output[1][62] = -minus_mx_platform_on_vx; // my_platform
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
-            output[1][61] = -my_platform_on_vx;
+            output[1][61] = -my_platform_on_vx; // mx_platform
             ::core::result::Result::Ok(())
         })
     }
@@ -4254,10 +4254,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -4285,19 +4285,19 @@ impl DualV {
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
-            output[0][23] = 0.0;
+            output[0][23] = 0.0; // m_2_leg2
             output[0][30..35].fill(0.0);
-            output[0][38] = 0.0;
+            output[0][38] = 0.0; // m_2_leg3
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][19] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][19] = 1.0; // off_1_leg2
             output[1][30..35].fill(0.0);
-            output[1][38] = 0.0;
+            output[1][38] = 0.0; // m_2_leg3
             output[2][0..12].fill(0.0);
             output[2][15..27].fill(0.0);
-            output[2][34] = 1.0;
+            output[2][34] = 1.0; // off_1_leg3
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -4379,8 +4379,8 @@ impl DualV {
             )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][14] = wz_by_a3;
-            output[2][29] = wz_by_a3;
+            output[2][14] = wz_by_a3; // off_3_leg1
+            output[2][29] = wz_by_a3; // off_3_leg2
             let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
             output[2][60] = zz_platform_on_q1_leg3;
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
@@ -4391,13 +4391,13 @@ impl DualV {
                 * half_per_det_ja;
             // --- platform
             let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
-            output[1][60] = -minus_zz_platform_on_q1_leg2;
+            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
             let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
                 + wz_by_a3_a_x_platform;
-            output[2][62] = -minus_my_platform_on_q1_leg3;
-            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            output[2][62] = -minus_my_platform_on_q1_leg3; // my_platform
+            output[2][63] = R_P * wz_by_a3_a_x_platform; // m_platform
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
@@ -4421,29 +4421,29 @@ impl DualV {
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = rate_1_leg1;
+            output[0][2] = rate_1_leg1; // fv_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[1][17] = -minus_rate_1_leg2;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][32] = rate_1_leg3;
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
+            output[2][32] = rate_1_leg3; // fv_1_leg3
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
             let vy_by_a3 = p_x_leg3 * wz_by_a3;
             let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][61] = wz_by_a3 * a_y_platform
+            output[2][61] = wz_by_a3 * a_y_platform // mx_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
                     + vx_by_a3 * inv_r_p_a_arm_y_leg3);
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
@@ -4459,7 +4459,7 @@ impl DualV {
                 + p_y_leg1 * minus_g2_vx_leg1;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            output[1][11] = g2_a2_leg1;
+            output[1][11] = g2_a2_leg1; // off_2_leg1
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
@@ -4471,8 +4471,8 @@ impl DualV {
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-            output[0][0] = rate_dot_1_leg1;
-            output[0][1] = rate_dot_1_leg1;
+            output[0][0] = rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = rate_dot_1_leg1; // ia_1_leg1
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
@@ -4480,26 +4480,26 @@ impl DualV {
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
             let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][6] = t2_platform
+            output[0][6] = t2_platform // mx_2_leg1
                 - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
-            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
-            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
             let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t4_platform = R_P_SQUARED_PER_L_AB
                 * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
                     + t3_platform);
-            output[1][6] = t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            output[1][6] = t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
@@ -4511,8 +4511,8 @@ impl DualV {
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let minus_rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-            output[1][15] = -minus_rate_dot_1_leg2;
-            output[1][16] = -minus_rate_dot_1_leg2;
+            output[1][15] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][16] = -minus_rate_dot_1_leg2; // ia_1_leg2
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
@@ -4522,72 +4522,72 @@ impl DualV {
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_q1_leg2;
-            output[1][21] = t4_platform
+            output[1][21] = t4_platform // mx_2_leg2
                 - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
-            output[0][26] = g2_a1_leg2;
+            output[0][26] = g2_a1_leg2; // off_2_leg2
             let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_q1_leg1;
-            output[0][21] = t2_platform - L_AB * zz_2_leg2_on_q1_leg1;
+            output[0][21] = t2_platform - L_AB * zz_2_leg2_on_q1_leg1; // mx_2_leg2
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
-            output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
+            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
+            output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[1][10] = -::overact::math::wide::signed(
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            output[1][14] = -minus_off_3_leg1_on_q1_leg2;
-            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
-            output[2][12] = wz_by_a3 * qd_3_leg1;
-            output[1][13] = -::overact::math::wide::signed(
+            output[1][14] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1
+            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
+            output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
+            output[1][13] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
-            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
+            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][24] = g2_a1_leg2 * qd_2_leg2;
-            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
+            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
-            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
-            output[2][27] = wz_by_a3 * qd_3_leg2;
-            output[0][28] = ::overact::math::wide::signed(
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
+            output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
+            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
             );
-            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
-            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
-            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
+            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
-            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
-            output[1][25] = ::overact::math::wide::signed(
+            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
+            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
             );
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            output[1][29] = -minus_off_3_leg2_on_q1_leg2;
-            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2);
-            output[1][28] = -::overact::math::wide::signed(
+            output[1][29] = -minus_off_3_leg2_on_q1_leg2; // off_3_leg2
+            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
+            output[1][28] = -::overact::math::wide::signed( // fs_3_leg2
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             );
@@ -4605,8 +4605,8 @@ impl DualV {
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-            output[2][30] = rate_dot_1_leg3;
-            output[2][31] = rate_dot_1_leg3;
+            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
+            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
@@ -4617,69 +4617,69 @@ impl DualV {
             let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = zz_2_leg3_on_q1_leg3;
             let t5_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t5_platform
+            output[2][36] = t5_platform // mx_2_leg3
                 - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3;
+            output[0][41] = g2_a1_leg3; // off_2_leg3
             let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            output[0][36] = t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][41] = g2_a2_leg3;
+            output[1][41] = g2_a2_leg3; // off_2_leg3
             let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
             let t7_platform = R_P_SQUARED_PER_L_AB
                 * (t3_platform
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
-            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
-            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
+            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
-            output[0][40] = -::overact::math::wide::signed(
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][40] = -::overact::math::wide::signed(
+            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
-            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
-            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
-            output[0][43] = ::overact::math::wide::signed(
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
             );
-            output[1][43] = -::overact::math::wide::signed(
+            output[1][43] = -::overact::math::wide::signed( // fs_3_leg3
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
             );
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
-            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
+            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][44] = off_3_leg3_on_q1_leg3;
-            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
-            output[2][43] = ::overact::math::wide::signed(
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
+            output[2][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
             );
@@ -4695,7 +4695,7 @@ impl DualV {
                 + p_y_leg1 * minus_g1_vx_leg4;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][49] = g1_a1_leg4;
+            output[0][49] = g1_a1_leg4; // off_1_leg4
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
@@ -4709,8 +4709,8 @@ impl DualV {
             let minus_rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
             let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
-            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
                 + g2_wz_leg4 * wz_by_a1;
@@ -4720,100 +4720,100 @@ impl DualV {
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_q1_leg1;
-            output[0][51] = t6_platform
+            output[0][51] = t6_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
             let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][49] = g1_a2_leg4;
+            output[1][49] = g1_a2_leg4; // off_1_leg4
             let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = -minus_zz_1_leg4_on_q1_leg2;
-            output[1][46] = -minus_zz_1_leg4_on_q1_leg2;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
             let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
                 - g2_wz_leg4 * minus_wz_by_a2;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_q1_leg2;
-            output[1][51] = t7_platform
+            output[1][51] = t7_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
-            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1);
-            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2);
-            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4);
-            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4);
-            output[0][48] = -::overact::math::wide::signed(
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[0][48] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][48] = -::overact::math::wide::signed(
+            output[1][48] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a2_leg4,
                 minus_rate_1_leg4,
             );
             let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            output[2][52] = -(7.142857142857143
+            output[2][52] = -(7.142857142857143 // my_2_leg4
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
             let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            output[2][49] = -minus_g1_a3_leg4;
+            output[2][49] = -minus_g1_a3_leg4; // off_1_leg4
             let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
             output[2][45] = zz_1_leg4_on_q1_leg3;
-            output[2][46] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
             let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_q1_leg3;
-            output[2][51] = t5_platform
+            output[2][51] = t5_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
-            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[2][48] = ::overact::math::wide::signed(
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             );
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
-            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
             output[0][56] = off_2_leg4_on_q1_leg1;
-            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
             output[0][59] = off_3_leg4_on_q1_leg1;
-            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][56] = off_2_leg4_on_q1_leg2;
-            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
+            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
             let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
-            output[1][59] = -minus_off_3_leg4_on_q1_leg2;
-            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2);
+            output[1][59] = -minus_off_3_leg4_on_q1_leg2; // off_3_leg4
+            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][56] = off_2_leg4_on_q1_leg3;
-            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
+            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
             output[2][59] = off_3_leg4_on_q1_leg3;
-            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3;
-            output[0][55] = ::overact::math::wide::signed(
+            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
+            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
             );
-            output[1][55] = ::overact::math::wide::signed(
+            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             );
-            output[2][55] = ::overact::math::wide::signed(
+            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             );
-            output[0][58] = ::overact::math::wide::signed(
+            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
             );
-            output[1][58] = -::overact::math::wide::signed(
+            output[1][58] = -::overact::math::wide::signed( // fs_3_leg4
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
             );
-            output[2][58] = ::overact::math::wide::signed(
+            output[2][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
             );
@@ -4849,10 +4849,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -4887,19 +4887,19 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// r_p² / l_ab
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
-            output[0][23] = 0.0;
+            output[0][23] = 0.0; // m_2_leg2
             output[0][30..35].fill(0.0);
-            output[0][38] = 0.0;
+            output[0][38] = 0.0; // m_2_leg3
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][19] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][19] = 1.0; // off_1_leg2
             output[1][30..35].fill(0.0);
-            output[1][38] = 0.0;
+            output[1][38] = 0.0; // m_2_leg3
             output[2][0..12].fill(0.0);
             output[2][15..27].fill(0.0);
-            output[2][34] = 1.0;
+            output[2][34] = 1.0; // off_1_leg3
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s1_leg1, c1_leg1), (s_phi, c_phi),
@@ -4946,13 +4946,13 @@ impl DualV {
             let inv_det_ja = 1.0 / det_ja;
             let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
                 * inv_det_ja;
-            output[2][14] = -minus_wz_by_a3;
-            output[2][29] = -minus_wz_by_a3;
+            output[2][14] = -minus_wz_by_a3; // off_3_leg1
+            output[2][29] = -minus_wz_by_a3; // off_3_leg2
             let wz_by_a2 = t3 * inv_det_ja;
             let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
             output[1][60] = zz_platform_on_q1_leg2;
             let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
-            output[2][60] = -minus_zz_platform_on_q1_leg3;
+            output[2][60] = -minus_zz_platform_on_q1_leg3; // zz_platform
             let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
                 + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
             let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
@@ -4975,35 +4975,35 @@ impl DualV {
             let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
                 + minus_wz_by_a3_a_x_platform;
             output[2][62] = my_platform_on_q1_leg3;
-            output[2][63] = -(R_P * minus_wz_by_a3_a_x_platform);
+            output[2][63] = -(R_P * minus_wz_by_a3_a_x_platform); // m_platform
             // --- leg1
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = rate_1_leg1;
+            output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            output[1][17] = rate_1_leg2;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
-            output[1][18] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][17] = rate_1_leg2; // fv_1_leg2
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][18] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][32] = rate_1_leg3;
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
+            output[2][32] = rate_1_leg3; // fv_1_leg3
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 // mx_platform
                 - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
             let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
             let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3 // mx_platform
                 + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
                 - minus_wz_by_a3 * a_y_platform;
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
@@ -5011,14 +5011,14 @@ impl DualV {
             output[0][62] = my_platform_on_q1_leg1;
             let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
                 + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
-            output[1][62] = -minus_my_platform_on_q1_leg2;
+            output[1][62] = -minus_my_platform_on_q1_leg2; // my_platform
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
             let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
                 + minus_g2_vx_leg1 * p_y_leg1;
             let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
                 - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            output[1][11] = g2_a2_leg1;
+            output[1][11] = g2_a2_leg1; // off_2_leg1
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
@@ -5030,8 +5030,8 @@ impl DualV {
             let v2_by_1_y_leg1 = L_AB * c2_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][0] = rate_dot_1_leg1;
-            output[0][1] = rate_dot_1_leg1;
+            output[0][0] = rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = rate_dot_1_leg1; // ia_1_leg1
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
@@ -5039,24 +5039,24 @@ impl DualV {
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
             let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][6] = t2_platform
+            output[0][6] = t2_platform // mx_2_leg1
                 - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
-            output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
-            output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
-            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1; // my_2_leg1
+            output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1); // my_2_leg1
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
             let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t5_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
-            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            output[1][6] = t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
             // --- leg2
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
@@ -5069,8 +5069,8 @@ impl DualV {
             let v2_by_1_y_leg2 = L_AB * c2_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][15] = rate_dot_1_leg2;
-            output[1][16] = rate_dot_1_leg2;
+            output[1][15] = rate_dot_1_leg2; // zz_1_leg2
+            output[1][16] = rate_dot_1_leg2; // ia_1_leg2
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
@@ -5080,81 +5080,81 @@ impl DualV {
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][20] = -minus_zz_2_leg2_on_q1_leg2;
-            output[1][21] = t5_platform
+            output[1][20] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
+            output[1][21] = t5_platform // mx_2_leg2
                 - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2);
             let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
-            output[0][26] = g2_a1_leg2;
+            output[0][26] = g2_a1_leg2; // off_2_leg2
             let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[0][20] = -minus_zz_2_leg2_on_q1_leg1;
-            output[0][21] = t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1;
-            output[1][22] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
-            output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
+            output[0][20] = -minus_zz_2_leg2_on_q1_leg1; // zz_2_leg2
+            output[0][21] = t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1; // mx_2_leg2
+            output[1][22] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2; // my_2_leg2
+            output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[1][10] = -::overact::math::wide::signed(
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
             output[1][14] = off_3_leg1_on_q1_leg2;
-            output[1][12] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
-            output[2][12] = -(minus_wz_by_a3 * qd_3_leg1);
-            output[1][13] = ::overact::math::wide::signed(
+            output[1][12] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
+            output[2][12] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
+            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][13] = -::overact::math::wide::signed(
+            output[2][13] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_wz_by_a3,
                 qd_3_leg1,
             );
-            output[1][23] = L_AB_SQUARED * rate_dot_1_leg2;
+            output[1][23] = L_AB_SQUARED * rate_dot_1_leg2; // m_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2);
-            output[0][25] = -::overact::math::wide::signed(
+            output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
+            output[0][25] = -::overact::math::wide::signed( // fs_2_leg2
                 g2_a1_leg2,
                 minus_qd_2_leg2,
             );
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
-            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
-            output[2][27] = -(minus_wz_by_a3 * qd_3_leg2);
-            output[0][28] = ::overact::math::wide::signed(
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
+            output[2][27] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
+            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
             );
-            output[2][28] = -::overact::math::wide::signed(
+            output[2][28] = -::overact::math::wide::signed( // fs_3_leg2
                 minus_wz_by_a3,
                 qd_3_leg2,
             );
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
-            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
-            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
+            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
-            output[1][24] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2);
-            output[1][25] = -::overact::math::wide::signed(
+            output[1][24] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
+            output[1][25] = -::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
             );
             let off_3_leg2_on_q1_leg2 = wz_by_a2 - g2_a2_leg2;
             output[1][29] = off_3_leg2_on_q1_leg2;
-            output[1][27] = qd_3_leg2 * off_3_leg2_on_q1_leg2;
-            output[1][28] = ::overact::math::wide::signed(
+            output[1][27] = qd_3_leg2 * off_3_leg2_on_q1_leg2; // fv_3_leg2
+            output[1][28] = ::overact::math::wide::signed( // fs_3_leg2
                 off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             );
@@ -5172,8 +5172,8 @@ impl DualV {
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            output[2][30] = rate_dot_1_leg3;
-            output[2][31] = rate_dot_1_leg3;
+            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
+            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
@@ -5182,68 +5182,68 @@ impl DualV {
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
             let minus_zz_2_leg3_on_q1_leg3 = g2_a3_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = -minus_zz_2_leg3_on_q1_leg3;
+            output[2][35] = -minus_zz_2_leg3_on_q1_leg3; // zz_2_leg3
             let t6_platform = 0.7857142857142857 * my_platform_on_q1_leg3;
-            output[2][36] = -(t6_platform
+            output[2][36] = -(t6_platform // mx_2_leg3
                 + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3));
-            output[2][37] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3;
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            output[2][37] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3; // my_2_leg3
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3;
+            output[0][41] = g2_a1_leg3; // off_2_leg3
             let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
             let t7_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            output[0][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
-            output[1][41] = g2_a2_leg3;
+            output[1][41] = g2_a2_leg3; // off_2_leg3
             let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
             let t8_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg2 + t3_platform + t4_platform);
-            output[1][36] = t8_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
-            output[0][37] = -(g2_a1_leg3 * minus_a_on_f1_leg3);
-            output[1][37] = -(g2_a2_leg3 * minus_a_on_f1_leg3);
+            output[1][36] = t8_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
+            output[0][37] = -(g2_a1_leg3 * minus_a_on_f1_leg3); // my_2_leg3
+            output[1][37] = -(g2_a2_leg3 * minus_a_on_f1_leg3); // my_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
-            output[0][40] = -::overact::math::wide::signed(
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][40] = -::overact::math::wide::signed(
+            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
-            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
             let off_3_leg3_on_q1_leg2 = wz_by_a2 - g2_a2_leg3;
             output[1][44] = off_3_leg3_on_q1_leg2;
-            output[1][42] = qd_3_leg3 * off_3_leg3_on_q1_leg2;
-            output[0][43] = ::overact::math::wide::signed(
+            output[1][42] = qd_3_leg3 * off_3_leg3_on_q1_leg2; // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
             );
-            output[1][43] = ::overact::math::wide::signed(
+            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
             );
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
             output[2][41] = off_2_leg3_on_q1_leg3;
-            output[2][39] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3);
-            output[2][40] = -::overact::math::wide::signed(
+            output[2][39] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
+            output[2][40] = -::overact::math::wide::signed( // fs_2_leg3
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             let minus_off_3_leg3_on_q1_leg3 = g2_a3_leg3 + minus_wz_by_a3;
-            output[2][44] = -minus_off_3_leg3_on_q1_leg3;
-            output[2][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3);
-            output[2][43] = -::overact::math::wide::signed(
+            output[2][44] = -minus_off_3_leg3_on_q1_leg3; // off_3_leg3
+            output[2][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3); // fv_3_leg3
+            output[2][43] = -::overact::math::wide::signed( // fs_3_leg3
                 minus_off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
             );
@@ -5256,7 +5256,7 @@ impl DualV {
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
             let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
                 + g1_wz_leg4 * wz_by_a1;
-            output[0][49] = g1_a1_leg4;
+            output[0][49] = g1_a1_leg4; // off_1_leg4
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -5271,7 +5271,7 @@ impl DualV {
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
             let zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_q1_leg1;
-            output[0][46] = zz_1_leg4_on_q1_leg1;
+            output[0][46] = zz_1_leg4_on_q1_leg1; // ia_1_leg4
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
             let g2_a1_leg4 = minus_g2_vy_leg4 * minus_vy_by_a1
@@ -5281,90 +5281,90 @@ impl DualV {
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
             let minus_zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * minus_rate_dot_2_leg4;
-            output[0][50] = -minus_zz_2_leg4_on_q1_leg1;
-            output[0][51] = t7_platform
+            output[0][50] = -minus_zz_2_leg4_on_q1_leg1; // zz_2_leg4
+            output[0][51] = t7_platform // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1);
             let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
                 + g1_wz_leg4 * wz_by_a2;
-            output[1][49] = g1_a2_leg4;
+            output[1][49] = g1_a2_leg4; // off_1_leg4
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
-            output[1][52] = g1_a2_leg4 * a_on_f2_leg4
+            output[1][52] = g1_a2_leg4 * a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * minus_a_on_f1_leg4;
-            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg1;
-            output[0][47] = g1_a1_leg4 * rate_1_leg4;
-            output[1][47] = g1_a2_leg4 * rate_1_leg4;
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg1; // m_2_leg4
+            output[0][47] = g1_a1_leg4 * rate_1_leg4; // fv_1_leg4
+            output[1][47] = g1_a2_leg4 * rate_1_leg4; // fv_1_leg4
             let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
-            output[2][49] = -minus_g1_a3_leg4;
-            output[2][47] = -(minus_g1_a3_leg4 * rate_1_leg4);
-            output[0][48] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4);
-            output[1][48] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4);
-            output[2][48] = -::overact::math::wide::signed(
+            output[2][49] = -minus_g1_a3_leg4; // off_1_leg4
+            output[2][47] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
+            output[0][48] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][48] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][48] = -::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 rate_1_leg4,
             );
-            output[0][52] = g1_a1_leg4 * a_on_f2_leg4
+            output[0][52] = g1_a1_leg4 * a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * minus_a_on_f1_leg4;
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            output[2][52] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+            output[2][52] = -(minus_g1_a3_leg4 * a_on_f2_leg4 // my_2_leg4
                 + g2_a3_leg4 * minus_a_on_f1_leg4);
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
             output[0][56] = off_2_leg4_on_q1_leg1;
-            output[0][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1);
+            output[0][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1); // fv_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
             output[0][59] = off_3_leg4_on_q1_leg1;
-            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
-            output[0][55] = -::overact::math::wide::signed(
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
+            output[0][55] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
             );
             let off_3_leg4_on_q1_leg2 = wz_by_a2 - g2_a2_leg4;
             output[1][59] = off_3_leg4_on_q1_leg2;
-            output[1][57] = qd_3_leg4 * off_3_leg4_on_q1_leg2;
+            output[1][57] = qd_3_leg4 * off_3_leg4_on_q1_leg2; // fv_3_leg4
             let minus_off_3_leg4_on_q1_leg3 = g2_a3_leg4 + minus_wz_by_a3;
-            output[2][59] = -minus_off_3_leg4_on_q1_leg3;
-            output[2][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3);
-            output[0][58] = ::overact::math::wide::signed(
+            output[2][59] = -minus_off_3_leg4_on_q1_leg3; // off_3_leg4
+            output[2][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3); // fv_3_leg4
+            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
             );
-            output[1][58] = ::overact::math::wide::signed(
+            output[1][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
             );
-            output[2][58] = -::overact::math::wide::signed(
+            output[2][58] = -::overact::math::wide::signed( // fs_3_leg4
                 minus_off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
             );
             let zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * rate_dot_1_leg4;
             output[1][45] = zz_1_leg4_on_q1_leg2;
-            output[1][46] = zz_1_leg4_on_q1_leg2;
+            output[1][46] = zz_1_leg4_on_q1_leg2; // ia_1_leg4
             let minus_zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * rate_dot_1_leg4;
-            output[2][45] = -minus_zz_1_leg4_on_q1_leg3;
-            output[2][46] = -minus_zz_1_leg4_on_q1_leg3;
+            output[2][45] = -minus_zz_1_leg4_on_q1_leg3; // zz_1_leg4
+            output[2][46] = -minus_zz_1_leg4_on_q1_leg3; // ia_1_leg4
             let minus_zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * minus_rate_dot_2_leg4;
-            output[1][50] = -minus_zz_2_leg4_on_q1_leg2;
-            output[1][51] = t8_platform
+            output[1][50] = -minus_zz_2_leg4_on_q1_leg2; // zz_2_leg4
+            output[1][51] = t8_platform // mx_2_leg4
                 - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2);
             let minus_zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * minus_rate_dot_2_leg4;
-            output[2][50] = -minus_zz_2_leg4_on_q1_leg3;
-            output[2][51] = -(t6_platform
+            output[2][50] = -minus_zz_2_leg4_on_q1_leg3; // zz_2_leg4
+            output[2][51] = -(t6_platform // mx_2_leg4
                 - L_AB * (minus_zz_1_leg4_on_q1_leg3 + minus_zz_2_leg4_on_q1_leg3));
-            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg2;
-            output[2][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3);
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg2; // m_2_leg4
+            output[2][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3); // m_2_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][56] = off_2_leg4_on_q1_leg2;
-            output[1][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2);
+            output[1][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2); // fv_2_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][56] = off_2_leg4_on_q1_leg3;
-            output[2][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3);
-            output[1][55] = -::overact::math::wide::signed(
+            output[2][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
+            output[1][55] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
             );
-            output[2][55] = -::overact::math::wide::signed(
+            output[2][55] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
             );
@@ -5401,10 +5401,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -5441,19 +5441,19 @@ impl DualV {
             const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
-            output[0][23] = 0.0;
+            output[0][23] = 0.0; // m_2_leg2
             output[0][30..35].fill(0.0);
-            output[0][38] = 0.0;
+            output[0][38] = 0.0; // m_2_leg3
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][19] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][19] = 1.0; // off_1_leg2
             output[1][30..35].fill(0.0);
-            output[1][38] = 0.0;
+            output[1][38] = 0.0; // m_2_leg3
             output[2][0..12].fill(0.0);
             output[2][15..27].fill(0.0);
-            output[2][34] = 1.0;
+            output[2][34] = 1.0; // off_1_leg3
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -5587,11 +5587,11 @@ impl DualV {
             )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][14] = wz_by_a3;
-            output[2][29] = wz_by_a3;
+            output[2][14] = wz_by_a3; // off_3_leg1
+            output[2][29] = wz_by_a3; // off_3_leg2
             let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            output[2][49] = -minus_g1_a3_leg4;
+            output[2][49] = -minus_g1_a3_leg4; // off_1_leg4
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
                 + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
@@ -5600,7 +5600,7 @@ impl DualV {
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][49] = g1_a1_leg4;
+            output[0][49] = g1_a1_leg4; // off_1_leg4
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
@@ -5609,14 +5609,14 @@ impl DualV {
                 * half_per_det_ja;
             let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][49] = g1_a2_leg4;
+            output[1][49] = g1_a2_leg4; // off_1_leg4
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
                 + p_y_leg1 * minus_g2_vx_leg1;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            output[1][11] = g2_a2_leg1;
+            output[1][11] = g2_a2_leg1; // off_2_leg1
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
@@ -5624,13 +5624,13 @@ impl DualV {
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            output[1][14] = -minus_off_3_leg1_on_q1_leg2;
+            output[1][14] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
-            output[0][26] = g2_a1_leg2;
+            output[0][26] = g2_a1_leg2; // off_2_leg2
             let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
@@ -5638,7 +5638,7 @@ impl DualV {
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            output[1][29] = -minus_off_3_leg2_on_q1_leg2;
+            output[1][29] = -minus_off_3_leg2_on_q1_leg2; // off_3_leg2
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
@@ -5653,7 +5653,7 @@ impl DualV {
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][56] = off_2_leg4_on_q1_leg2;
             let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
-            output[1][59] = -minus_off_3_leg4_on_q1_leg2;
+            output[1][59] = -minus_off_3_leg4_on_q1_leg2; // off_3_leg4
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
@@ -5692,7 +5692,7 @@ impl DualV {
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][2] = rate_1_leg1;
+            output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -5708,7 +5708,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[1][17] = -minus_rate_1_leg2;
+            output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -5728,7 +5728,7 @@ impl DualV {
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][32] = rate_1_leg3;
+            output[2][32] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
@@ -5774,7 +5774,7 @@ impl DualV {
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
-            output[2][52] = -(7.142857142857143
+            output[2][52] = -(7.142857142857143 // my_2_leg4
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
@@ -5786,7 +5786,7 @@ impl DualV {
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -5795,32 +5795,32 @@ impl DualV {
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            output[0][0] = rate_dot_1_leg1;
-            output[0][1] = rate_dot_1_leg1;
+            output[0][0] = rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = rate_dot_1_leg1; // ia_1_leg1
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_q1_leg2;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[1][15] = -minus_rate_dot_1_leg2;
-            output[1][16] = -minus_rate_dot_1_leg2;
-            output[1][7] = -(g2_a2_leg1 * a2_x_leg1);
-            output[0][22] = -(g2_a1_leg2 * a2_x_leg2);
+            output[1][15] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][16] = -minus_rate_dot_1_leg2; // ia_1_leg2
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][30] = rate_dot_1_leg3;
-            output[2][31] = rate_dot_1_leg3;
+            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
+            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
             let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
@@ -5832,93 +5832,93 @@ impl DualV {
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][61] = wz_by_a3 * a_y_platform
+            output[2][61] = wz_by_a3 * a_y_platform // mx_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
                     + vx_by_a3 * inv_r_p_a_arm_y_leg3);
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
-            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
+            output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[1][10] = -::overact::math::wide::signed(
+            output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
+            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
-            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
-            output[1][13] = -::overact::math::wide::signed(
+            output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
+            output[1][13] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][12] = wz_by_a3 * qd_3_leg1;
-            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
+            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_q1_leg1;
-            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2);
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][24] = g2_a1_leg2 * qd_2_leg2;
-            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
-            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
-            output[1][25] = ::overact::math::wide::signed(
+            output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
+            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
+            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
             );
             let qd_3_leg2 = wz - rate_2_leg2;
-            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1;
-            output[0][28] = ::overact::math::wide::signed(
+            output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
+            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
             );
-            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2);
-            output[1][28] = -::overact::math::wide::signed(
+            output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
+            output[1][28] = -::overact::math::wide::signed( // fs_3_leg2
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             );
-            output[2][27] = wz_by_a3 * qd_3_leg2;
-            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3);
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3;
+            output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
+            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
             // --- leg4
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = -minus_zz_1_leg4_on_q1_leg1;
-            output[0][46] = -minus_zz_1_leg4_on_q1_leg1;
-            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4);
-            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4);
-            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[0][48] = -::overact::math::wide::signed(
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][48] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
-            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
-            output[1][48] = -::overact::math::wide::signed(
+            output[1][48] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a2_leg4,
                 minus_rate_1_leg4,
             );
             let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = -minus_zz_1_leg4_on_q1_leg2;
-            output[1][46] = -minus_zz_1_leg4_on_q1_leg2;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
             let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
             output[2][45] = zz_1_leg4_on_q1_leg3;
-            output[2][46] = zz_1_leg4_on_q1_leg3;
-            output[2][48] = ::overact::math::wide::signed(
+            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
+            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             );
@@ -5926,44 +5926,44 @@ impl DualV {
             output[0][50] = zz_2_leg4_on_q1_leg1;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_q1_leg2;
-            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1);
-            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2);
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3;
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
-            output[0][55] = ::overact::math::wide::signed(
+            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
+            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
             );
-            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
-            output[1][55] = ::overact::math::wide::signed(
+            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
+            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             );
-            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
-            output[2][55] = ::overact::math::wide::signed(
+            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
+            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             );
             let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1;
-            output[0][58] = ::overact::math::wide::signed(
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
+            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
             );
-            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2);
-            output[1][58] = -::overact::math::wide::signed(
+            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
+            output[1][58] = -::overact::math::wide::signed( // fs_3_leg4
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
             );
-            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3;
-            output[2][58] = ::overact::math::wide::signed(
+            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed( // fs_3_leg4
                 off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
             );
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
             // --- platform
             let a_x_platform = s_phi * dvy + c_phi * dvx;
@@ -5975,32 +5975,32 @@ impl DualV {
                 + minus_wz_by_a2 * a_x_platform;
             output[1][62] = my_platform_on_q1_leg2;
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][63] = R_P * wz_by_a3_a_x_platform;
+            output[2][63] = R_P * wz_by_a3_a_x_platform; // m_platform
             let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
             output[2][60] = zz_platform_on_q1_leg3;
             let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
                 + wz_by_a3_a_x_platform;
-            output[2][62] = -minus_my_platform_on_q1_leg3;
+            output[2][62] = -minus_my_platform_on_q1_leg3; // my_platform
             let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t1_platform
+            output[2][36] = t1_platform // mx_2_leg3
                 - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
-            output[2][51] = t1_platform
+            output[2][51] = t1_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][44] = off_3_leg3_on_q1_leg3;
-            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3;
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3;
+            output[0][41] = g2_a1_leg3; // off_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3);
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][41] = g2_a2_leg3;
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3);
-            output[0][37] = -(g2_a1_leg3 * a2_x_leg3);
+            output[1][41] = g2_a2_leg3; // off_2_leg3
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
             let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
             output[0][63] = m_platform_on_q1_leg1;
             let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
@@ -6012,68 +6012,68 @@ impl DualV {
             let t3_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t2_platform);
-            output[0][6] = t3_platform
+            output[0][6] = t3_platform // mx_2_leg1
                 - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
             let t4_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t2_platform);
-            output[0][51] = t4_platform
+            output[0][51] = t4_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
-            output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1;
+            output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1; // mx_2_leg2
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
             let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
-            output[1][60] = -minus_zz_platform_on_q1_leg2;
+            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
             let t5_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
                     + t5_platform);
-            output[1][21] = t6_platform
+            output[1][21] = t6_platform // mx_2_leg2
                 - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
             let t7_platform = R_P_SQUARED_PER_L_AB
                 * (t5_platform
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
-            output[1][51] = t7_platform
+            output[1][51] = t7_platform // mx_2_leg4
                 - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
-            output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2;
+            output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
             // --- leg3
             let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1;
-            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
+            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2;
-            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2;
-            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
+            output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][41] = -minus_off_2_leg3_on_q1_leg3;
-            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
-            output[0][40] = -::overact::math::wide::signed(
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
+            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][40] = -::overact::math::wide::signed(
+            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
-            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][44] = -minus_off_3_leg3_on_q1_leg2;
-            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2);
-            output[0][43] = ::overact::math::wide::signed(
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
             );
-            output[1][43] = -::overact::math::wide::signed(
+            output[1][43] = -::overact::math::wide::signed( // fs_3_leg3
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
             );
-            output[2][43] = ::overact::math::wide::signed(
+            output[2][43] = ::overact::math::wide::signed( // fs_3_leg3
                 off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
             );
@@ -6108,10 +6108,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -6139,9 +6139,9 @@ impl DualV {
                 const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
                 /// 2 l_ab²
                 const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                output[0][0] = 0.0;
-                output[1][0] = 0.0;
-                output[2][3] = 0.0;
+                output[0][0] = 0.0; // zz_platformR
+                output[1][0] = 0.0; // zz_platformR
+                output[2][3] = 0.0; // m_platformR
                 let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
                 // --- leg
                 let rate_3_squared_leg = twist[2] * twist[2];
@@ -6151,15 +6151,15 @@ impl DualV {
                     - c_phi * acceleration[2];
                 let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
                 let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-                output[0][1] = -minus_mx_platform_on_vx;
-                output[0][2] = my_platform_on_vx;
-                output[0][3] = acceleration[0];
-                output[1][1] = -my_platform_on_vx;
-                output[1][2] = -minus_mx_platform_on_vx;
-                output[1][3] = acceleration[1];
-                output[2][0] = acceleration[2];
-                output[2][1] = a_y_platform;
-                output[2][2] = -a_x_platform;
+                output[0][1] = -minus_mx_platform_on_vx; // mx_platform
+                output[0][2] = my_platform_on_vx; // my_platformR
+                output[0][3] = acceleration[0]; // m_platformR
+                output[1][1] = -my_platform_on_vx; // mx_platform
+                output[1][2] = -minus_mx_platform_on_vx; // my_platformR
+                output[1][3] = acceleration[1]; // m_platformR
+                output[2][0] = acceleration[2]; // zz_platformR
+                output[2][1] = a_y_platform; // mx_platform
+                output[2][2] = -a_x_platform; // my_platformR
                 /// Numbers in which the legs differ: a row for each, in it one for each leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
@@ -6482,12 +6482,12 @@ impl DualV {
         const R_P: ::core::primitive::f64 = 0.11;
         /// 2 l_ab²
         const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-        output[0][0] = 0.0;
-        output[0][3] = acceleration[0];
-        output[1][0] = 0.0;
-        output[1][3] = acceleration[1];
-        output[2][0] = acceleration[2];
-        output[2][3] = 0.0;
+        output[0][0] = 0.0; // zz_platformR
+        output[0][3] = acceleration[0]; // m_platformR
+        output[1][0] = 0.0; // zz_platformR
+        output[1][3] = acceleration[1]; // m_platformR
+        output[2][0] = acceleration[2]; // zz_platformR
+        output[2][3] = 0.0; // m_platformR
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
@@ -6539,177 +6539,177 @@ impl DualV {
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][1] = a_y_platform;
+        output[2][1] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][2] = -a_x_platform;
+        output[2][2] = -a_x_platform; // my_platformR
         // --- leg1
         let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
         let k1_leg1 = 1.0 / det_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        output[0][48] = minus_g2_vx_leg1;
+        output[0][48] = minus_g2_vx_leg1; // off_3_leg1R
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        output[1][48] = minus_g2_vy_leg1;
+        output[1][48] = minus_g2_vy_leg1; // off_3_leg1R
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        output[0][16] = g1_vx_leg1;
+        output[0][16] = g1_vx_leg1; // off_1_leg1R
         let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-        output[0][36] = -minus_gq2_vx_leg1;
+        output[0][36] = -minus_gq2_vx_leg1; // off_2_leg1R
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        output[1][16] = g1_vy_leg1;
+        output[1][16] = g1_vy_leg1; // off_1_leg1R
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        output[2][16] = -minus_g1_wz_leg1;
+        output[2][16] = -minus_g1_wz_leg1; // off_1_leg1R
         let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        output[1][36] = -minus_gq2_vy_leg1;
+        output[1][36] = -minus_gq2_vy_leg1; // off_2_leg1R
         // --- leg2
         let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        output[0][17] = -minus_g1_vx_leg2;
+        output[0][17] = -minus_g1_vx_leg2; // off_1_leg2R
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        output[1][17] = -minus_g1_vy_leg2;
+        output[1][17] = -minus_g1_vy_leg2; // off_1_leg2R
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        output[2][17] = g1_wz_leg2;
+        output[2][17] = g1_wz_leg2; // off_1_leg2R
         // --- leg3
         let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        output[0][18] = g1_vx_leg3;
+        output[0][18] = g1_vx_leg3; // off_1_leg3R
         let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        output[1][18] = g1_vy_leg3;
+        output[1][18] = g1_vy_leg3; // off_1_leg3R
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        output[2][18] = g1_wz_leg3;
+        output[2][18] = g1_wz_leg3; // off_1_leg3R
         // --- leg4
         let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        output[0][19] = -minus_g1_vx_leg4;
+        output[0][19] = -minus_g1_vx_leg4; // off_1_leg4R
         let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        output[1][19] = -minus_g1_vy_leg4;
+        output[1][19] = -minus_g1_vy_leg4; // off_1_leg4R
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        output[2][19] = -minus_g1_wz_leg4;
+        output[2][19] = -minus_g1_wz_leg4; // off_1_leg4R
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-        output[2][36] = gq2_wz_leg1;
+        output[2][36] = gq2_wz_leg1; // off_2_leg1R
         let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-        output[2][48] = gq3_wz_leg1;
+        output[2][48] = gq3_wz_leg1; // off_3_leg1R
         // --- leg2
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-        output[0][37] = gq2_vx_leg2;
+        output[0][37] = gq2_vx_leg2; // off_2_leg2R
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-        output[1][37] = gq2_vy_leg2;
+        output[1][37] = gq2_vy_leg2; // off_2_leg2R
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-        output[2][37] = -minus_gq2_wz_leg2;
+        output[2][37] = -minus_gq2_wz_leg2; // off_2_leg2R
         // --- leg3
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-        output[0][38] = -minus_gq2_vx_leg3;
+        output[0][38] = -minus_gq2_vx_leg3; // off_2_leg3R
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-        output[1][38] = -minus_gq2_vy_leg3;
+        output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
         let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-        output[2][38] = -minus_gq2_wz_leg3;
+        output[2][38] = -minus_gq2_wz_leg3; // off_2_leg3R
         // --- leg4
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
         let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-        output[0][39] = gq2_vx_leg4;
+        output[0][39] = gq2_vx_leg4; // off_2_leg4R
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-        output[1][39] = gq2_vy_leg4;
+        output[1][39] = gq2_vy_leg4; // off_2_leg4R
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-        output[2][39] = gq2_wz_leg4;
+        output[2][39] = gq2_wz_leg4; // off_2_leg4R
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][1] = -minus_mx_platform_on_vx;
-        output[1][2] = -minus_mx_platform_on_vx;
+        output[0][1] = -minus_mx_platform_on_vx; // mx_platform
+        output[1][2] = -minus_mx_platform_on_vx; // my_platformR
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-        output[0][2] = my_platform_on_vx;
-        output[1][1] = -my_platform_on_vx;
+        output[0][2] = my_platform_on_vx; // my_platformR
+        output[1][1] = -my_platform_on_vx; // mx_platform
         let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        output[0][8] = g1_vx_leg1 * rate_1_leg1;
-        output[1][8] = g1_vy_leg1 * rate_1_leg1;
-        output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
-        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1);
-        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1);
-        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1);
+        output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+        output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+        output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
-        output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2;
-        output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2;
-        output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
-        output[0][13] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2);
-        output[1][13] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2);
-        output[2][13] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2);
+        output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
+        output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
+        output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
+        output[0][13] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[1][13] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[2][13] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-        output[0][10] = g1_vx_leg3 * rate_1_leg3;
-        output[1][10] = g1_vy_leg3 * rate_1_leg3;
-        output[2][10] = g1_wz_leg3 * rate_1_leg3;
-        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3);
-        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3);
-        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3);
+        output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+        output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+        output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
-        output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-        output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-        output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4);
-        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4);
-        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4);
+        output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
+        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1);
-        output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1);
-        output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1);
+        output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
+        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
+        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
+        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-        output[0][29] = qd_2_leg2 * gq2_vx_leg2;
-        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2);
-        output[1][29] = qd_2_leg2 * gq2_vy_leg2;
-        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2);
-        output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2);
-        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2);
+        output[0][29] = qd_2_leg2 * gq2_vx_leg2; // fv_2_leg2
+        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+        output[1][29] = qd_2_leg2 * gq2_vy_leg2; // fv_2_leg2
+        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+        output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2); // fv_2_leg2
+        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-        output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
-        output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
-        output[2][40] = qd_3_leg1 * gq3_wz_leg1;
-        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1);
-        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1);
-        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1);
+        output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+        output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+        output[2][40] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
+        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
         let qd_3_leg2 = twist[2] - rate_2_leg2;
-        output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
-        output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
-        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2);
-        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2);
+        output[0][41] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
+        output[1][41] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
+        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
         let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-        output[2][41] = qd_3_leg2 * gq3_wz_leg2;
-        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2);
+        output[2][41] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
+        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
         let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
         let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -6719,15 +6719,15 @@ impl DualV {
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+        output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
         let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
             + minus_g2_vx_leg1 * a2_x_leg1;
         // --- leg2
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
@@ -6738,47 +6738,47 @@ impl DualV {
             + L_AB_SQUARED * rate_1_squared_leg2;
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-        output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+        output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + g2_vx_leg2 * a2_x_leg2);
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-        output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-        output[0][21] = g2_vx_leg2 * rate_dot_2_leg2;
-        output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
-        output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
-        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+        output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
+        output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
+        output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
+        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
             + minus_g2_vy_leg1 * a2_x_leg1;
-        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
             + g2_wz_leg1 * a2_x_leg1);
-        output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
-        output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2);
-        output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+        output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+        output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+        output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
+        output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
+        output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + g2_vy_leg2 * a2_x_leg2);
-        output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+        output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
             + minus_g2_wz_leg2 * a2_x_leg2;
-        output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
-        output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
+        output[1][21] = g2_vy_leg2 * rate_dot_2_leg2; // zz_2_leg2R
+        output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
-        output[0][34] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3);
-        output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
-        output[1][34] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3);
-        output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3);
+        output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
+        output[0][34] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
+        output[1][34] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
+        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-        output[0][31] = qd_2_leg4 * gq2_vx_leg4;
-        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4);
-        output[1][31] = qd_2_leg4 * gq2_vy_leg4;
-        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4);
-        output[2][31] = qd_2_leg4 * gq2_wz_leg4;
-        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4);
+        output[0][31] = qd_2_leg4 * gq2_vx_leg4; // fv_2_leg4
+        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+        output[1][31] = qd_2_leg4 * gq2_vy_leg4; // fv_2_leg4
+        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+        output[2][31] = qd_2_leg4 * gq2_wz_leg4; // fv_2_leg4
+        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
         // --- leg3
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
@@ -6789,15 +6789,15 @@ impl DualV {
         let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-        output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+        output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-        output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
         let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_vx_leg3 * a2_x_leg3;
         // --- leg4
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
@@ -6808,46 +6808,46 @@ impl DualV {
             + L_AB_SQUARED * rate_1_squared_leg4;
         let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_vx_leg4 * a2_x_leg4);
         let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-        output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-        output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
-        output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
-        output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
-        output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+        output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+        output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+        output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+        output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_vy_leg3 * a2_x_leg3;
-        output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+        output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
             + minus_g2_wz_leg3 * a2_x_leg3;
-        output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+        output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+        output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_vy_leg4 * a2_x_leg4);
-        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
             + g2_wz_leg4 * a2_x_leg4);
-        output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
-        output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
+        output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+        output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+        output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+        output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-        output[0][46] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3);
-        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-        output[1][46] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3);
+        output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+        output[0][46] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+        output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+        output[1][46] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
         let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-        output[2][42] = qd_3_leg3 * gq3_wz_leg3;
-        output[2][46] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3);
+        output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
+        output[2][46] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
         let qd_3_leg4 = twist[2] - rate_2_leg4;
-        output[0][43] = -(g2_vx_leg4 * qd_3_leg4);
-        output[0][47] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4);
-        output[1][43] = -(g2_vy_leg4 * qd_3_leg4);
-        output[1][47] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4);
+        output[0][43] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+        output[0][47] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+        output[1][43] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+        output[1][47] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
         let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-        output[2][43] = qd_3_leg4 * gq3_wz_leg4;
-        output[2][47] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4);
+        output[2][43] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
+        output[2][47] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -6879,10 +6879,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -6911,12 +6911,12 @@ impl DualV {
             const L_AB: ::core::primitive::f64 = 0.28;
             /// r_p
             const R_P: ::core::primitive::f64 = 0.11;
-            output[0][0] = 0.0;
-            output[0][3] = acceleration[0];
-            output[1][0] = 0.0;
-            output[1][3] = acceleration[1];
-            output[2][0] = acceleration[2];
-            output[2][3] = 0.0;
+            output[0][0] = 0.0; // zz_platformR
+            output[0][3] = acceleration[0]; // m_platformR
+            output[1][0] = 0.0; // zz_platformR
+            output[1][3] = acceleration[1]; // m_platformR
+            output[2][0] = acceleration[2]; // zz_platformR
+            output[2][3] = 0.0; // m_platformR
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
@@ -6929,72 +6929,72 @@ impl DualV {
             ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
             ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[2][1] = a_y_platform;
+            output[2][1] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-            output[2][2] = -a_x_platform;
+            output[2][2] = -a_x_platform; // my_platformR
             // --- leg1
             let p_y_leg1 = R_P * c_phi;
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let p_x_leg3 = R_P * s_phi;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][1] = -minus_mx_platform_on_vx;
-            output[1][2] = -minus_mx_platform_on_vx;
+            output[0][1] = -minus_mx_platform_on_vx; // mx_platform
+            output[1][2] = -minus_mx_platform_on_vx; // my_platformR
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            output[0][2] = my_platform_on_vx;
-            output[1][1] = -my_platform_on_vx;
+            output[0][2] = my_platform_on_vx; // my_platformR
+            output[1][1] = -my_platform_on_vx; // mx_platform
             let k1_leg1 = INV_L_AB / s2_leg1;
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
-            output[0][48] = minus_g2_vx_leg1;
+            output[0][48] = minus_g2_vx_leg1; // off_3_leg1R
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
-            output[1][48] = minus_g2_vy_leg1;
+            output[1][48] = minus_g2_vy_leg1; // off_3_leg1R
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let g1_vx_leg1 = c12_leg1 * k1_leg1;
-            output[0][16] = g1_vx_leg1;
+            output[0][16] = g1_vx_leg1; // off_1_leg1R
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let g1_vy_leg1 = s12_leg1 * k1_leg1;
-            output[1][16] = g1_vy_leg1;
+            output[1][16] = g1_vy_leg1; // off_1_leg1R
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
-            output[2][16] = -minus_g1_wz_leg1;
+            output[2][16] = -minus_g1_wz_leg1; // off_1_leg1R
             let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][36] = -minus_gq2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1; // off_2_leg1R
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][36] = -minus_gq2_vy_leg1;
+            output[1][36] = -minus_gq2_vy_leg1; // off_2_leg1R
             let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
                 + minus_g2_vx_leg1 * p_y_leg1;
             let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][36] = gq2_wz_leg1;
+            output[2][36] = gq2_wz_leg1; // off_2_leg1R
             let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][48] = gq3_wz_leg1;
+            output[2][48] = gq3_wz_leg1; // off_3_leg1R
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = g1_vx_leg1 * rate_1_leg1;
-            output[1][8] = g1_vy_leg1 * rate_1_leg1;
-            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
-            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
-            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
-            output[2][12] = -::overact::math::wide::signed(
+            output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+            output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][12] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_wz_leg1,
                 rate_1_leg1,
             );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1;
-            output[0][32] = ::overact::math::wide::signed(
+            output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
+            output[0][32] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1;
-            output[1][32] = ::overact::math::wide::signed(
+            output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
+            output[1][32] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
             );
-            output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1);
-            output[2][32] = -::overact::math::wide::signed(
+            output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
+            output[2][32] = -::overact::math::wide::signed( // fs_2_leg1
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
             );
@@ -7008,43 +7008,43 @@ impl DualV {
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
-            output[0][24] = g1_vx_leg1 * a_on_f2_leg1
+            output[0][24] = g1_vx_leg1 * a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
-            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
-            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
-            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
-            output[1][24] = g1_vy_leg1 * a_on_f2_leg1
+            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
+            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
+            output[1][24] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
-            output[2][24] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * a_on_f2_leg1 // my_2_leg1
                 + g2_wz_leg1 * minus_a_on_f1_leg1);
-            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
-            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
-            output[0][44] = ::overact::math::wide::signed(
+            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vx_leg1,
                 qd_3_leg1,
             );
-            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
-            output[1][44] = ::overact::math::wide::signed(
+            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vy_leg1,
                 qd_3_leg1,
             );
-            output[2][40] = qd_3_leg1 * gq3_wz_leg1;
-            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
+            output[2][40] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
+            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let k1_leg2 = INV_L_AB / s2_leg2;
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
-            output[0][17] = g1_vx_leg2;
+            output[0][17] = g1_vx_leg2; // off_1_leg2R
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let g1_vy_leg2 = s12_leg2 * k1_leg2;
-            output[1][17] = g1_vy_leg2;
+            output[1][17] = g1_vy_leg2; // off_1_leg2R
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
@@ -7058,93 +7058,93 @@ impl DualV {
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg2;
-            output[0][25] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][25] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
-            output[0][5] = g1_vx_leg2 * rate_dot_1_leg2;
+            output[0][5] = g1_vx_leg2 * rate_dot_1_leg2; // zz_1_leg2R
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
-            output[0][21] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            output[1][5] = g1_vy_leg2 * rate_dot_1_leg2;
+            output[0][21] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
+            output[1][5] = g1_vy_leg2 * rate_dot_1_leg2; // zz_1_leg2R
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
-            output[2][17] = -minus_g1_wz_leg2;
-            output[2][5] = -(minus_g1_wz_leg2 * rate_dot_1_leg2);
-            output[0][9] = g1_vx_leg2 * rate_1_leg2;
-            output[1][9] = g1_vy_leg2 * rate_1_leg2;
-            output[2][9] = -(minus_g1_wz_leg2 * rate_1_leg2);
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
-            output[2][13] = -::overact::math::wide::signed(
+            output[2][17] = -minus_g1_wz_leg2; // off_1_leg2R
+            output[2][5] = -(minus_g1_wz_leg2 * rate_dot_1_leg2); // zz_1_leg2R
+            output[0][9] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][9] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
+            output[2][9] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[2][13] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_wz_leg2,
                 rate_1_leg2,
             );
-            output[1][21] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+            output[1][21] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
-            output[2][21] = -(g2_wz_leg2 * minus_rate_dot_2_leg2);
-            output[1][25] = g1_vy_leg2 * a_on_f2_leg2
+            output[2][21] = -(g2_wz_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            output[1][25] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[2][25] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+            output[2][25] = -(minus_g1_wz_leg2 * a_on_f2_leg2 // my_2_leg2
                 + g2_wz_leg2 * minus_a_on_f1_leg2);
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
-            output[0][37] = -minus_gq2_vx_leg2;
-            output[0][29] = minus_qd_2_leg2 * minus_gq2_vx_leg2;
+            output[0][37] = -minus_gq2_vx_leg2; // off_2_leg2R
+            output[0][29] = minus_qd_2_leg2 * minus_gq2_vx_leg2; // fv_2_leg2
             let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
-            output[1][37] = -minus_gq2_vy_leg2;
-            output[1][29] = minus_qd_2_leg2 * minus_gq2_vy_leg2;
+            output[1][37] = -minus_gq2_vy_leg2; // off_2_leg2R
+            output[1][29] = minus_qd_2_leg2 * minus_gq2_vy_leg2; // fv_2_leg2
             let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
-            output[2][37] = gq2_wz_leg2;
-            output[2][29] = -(minus_qd_2_leg2 * gq2_wz_leg2);
-            output[0][33] = ::overact::math::wide::signed(
+            output[2][37] = gq2_wz_leg2; // off_2_leg2R
+            output[2][29] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
+            output[0][33] = ::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vx_leg2,
                 minus_qd_2_leg2,
             );
-            output[1][33] = ::overact::math::wide::signed(
+            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vy_leg2,
                 minus_qd_2_leg2,
             );
-            output[2][33] = -::overact::math::wide::signed(
+            output[2][33] = -::overact::math::wide::signed( // fs_2_leg2
                 gq2_wz_leg2,
                 minus_qd_2_leg2,
             );
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            output[0][41] = minus_g2_vx_leg2 * qd_3_leg2;
-            output[0][45] = ::overact::math::wide::signed(
+            output[0][41] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
+            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
                 minus_g2_vx_leg2,
                 qd_3_leg2,
             );
-            output[1][41] = minus_g2_vy_leg2 * qd_3_leg2;
-            output[1][45] = ::overact::math::wide::signed(
+            output[1][41] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
+            output[1][45] = ::overact::math::wide::signed( // fs_3_leg2
                 minus_g2_vy_leg2,
                 qd_3_leg2,
             );
             let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
-            output[2][41] = qd_3_leg2 * gq3_wz_leg2;
-            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
+            output[2][41] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
+            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let k1_leg3 = INV_L_AB / s2_leg3;
             let g1_vx_leg3 = c12_leg3 * k1_leg3;
-            output[0][18] = g1_vx_leg3;
+            output[0][18] = g1_vx_leg3; // off_1_leg3R
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let g1_vy_leg3 = s12_leg3 * k1_leg3;
-            output[1][18] = g1_vy_leg3;
+            output[1][18] = g1_vy_leg3; // off_1_leg3R
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][10] = g1_vx_leg3 * rate_1_leg3;
-            output[1][10] = g1_vy_leg3 * rate_1_leg3;
-            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
+            output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][18] = g1_wz_leg3;
-            output[2][10] = g1_wz_leg3 * rate_1_leg3;
-            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            output[2][18] = g1_wz_leg3; // off_1_leg3R
+            output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][38] = -minus_gq2_vx_leg3;
+            output[0][38] = -minus_gq2_vx_leg3; // off_2_leg3R
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
             let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
@@ -7158,66 +7158,66 @@ impl DualV {
             let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg3;
-            output[0][26] = g1_vx_leg3 * a_on_f2_leg3
+            output[0][26] = g1_vx_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
-            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
-            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
-            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
-            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
-            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            output[1][26] = g1_vy_leg3 * a_on_f2_leg3
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[1][26] = g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
-            output[2][26] = g1_wz_leg3 * a_on_f2_leg3
+            output[2][26] = g1_wz_leg3 * a_on_f2_leg3 // my_2_leg3
                 + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3;
-            output[0][34] = ::overact::math::wide::signed(
+            output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
+            output[0][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
             );
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
-            output[1][38] = -minus_gq2_vy_leg3;
-            output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3;
+            output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
+            output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][38] = -minus_gq2_wz_leg3;
-            output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3;
-            output[1][34] = ::overact::math::wide::signed(
+            output[2][38] = -minus_gq2_wz_leg3; // off_2_leg3R
+            output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
+            output[1][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
             );
-            output[2][34] = ::overact::math::wide::signed(
+            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-            output[0][46] = ::overact::math::wide::signed(
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vx_leg3,
                 qd_3_leg3,
             );
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-            output[1][46] = ::overact::math::wide::signed(
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             );
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][42] = qd_3_leg3 * gq3_wz_leg3;
-            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
+            output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
+            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let k1_leg4 = INV_L_AB / s2_leg4;
             let g1_vx_leg4 = c12_leg4 * k1_leg4;
-            output[0][19] = g1_vx_leg4;
+            output[0][19] = g1_vx_leg4; // off_1_leg4R
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
             let g1_vy_leg4 = s12_leg4 * k1_leg4;
-            output[1][19] = g1_vy_leg4;
+            output[1][19] = g1_vy_leg4; // off_1_leg4R
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -7231,68 +7231,68 @@ impl DualV {
             let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
-            output[0][27] = g1_vx_leg4 * a_on_f2_leg4
+            output[0][27] = g1_vx_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
-            output[0][7] = g1_vx_leg4 * rate_dot_1_leg4;
+            output[0][7] = g1_vx_leg4 * rate_dot_1_leg4; // zz_1_leg4R
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
-            output[0][23] = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-            output[1][7] = g1_vy_leg4 * rate_dot_1_leg4;
+            output[0][23] = minus_g2_vx_leg4 * minus_rate_dot_2_leg4; // zz_2_leg4R
+            output[1][7] = g1_vy_leg4 * rate_dot_1_leg4; // zz_1_leg4R
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-            output[2][19] = g1_wz_leg4;
-            output[2][7] = g1_wz_leg4 * rate_dot_1_leg4;
+            output[2][19] = g1_wz_leg4; // off_1_leg4R
+            output[2][7] = g1_wz_leg4 * rate_dot_1_leg4; // zz_1_leg4R
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
-            output[2][23] = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-            output[1][23] = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
-            output[0][11] = g1_vx_leg4 * rate_1_leg4;
-            output[1][11] = g1_vy_leg4 * rate_1_leg4;
-            output[2][11] = g1_wz_leg4 * rate_1_leg4;
-            output[0][15] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4);
-            output[1][15] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4);
-            output[2][15] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4);
-            output[1][27] = g1_vy_leg4 * a_on_f2_leg4
+            output[2][23] = minus_g2_wz_leg4 * minus_rate_dot_2_leg4; // zz_2_leg4R
+            output[1][23] = minus_g2_vy_leg4 * minus_rate_dot_2_leg4; // zz_2_leg4R
+            output[0][11] = g1_vx_leg4 * rate_1_leg4; // fv_1_leg4
+            output[1][11] = g1_vy_leg4 * rate_1_leg4; // fv_1_leg4
+            output[2][11] = g1_wz_leg4 * rate_1_leg4; // fv_1_leg4
+            output[0][15] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][15] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][15] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][27] = g1_vy_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
-            output[2][27] = g1_wz_leg4 * a_on_f2_leg4
+            output[2][27] = g1_wz_leg4 * a_on_f2_leg4 // my_2_leg4
                 + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
-            output[0][39] = -minus_gq2_vx_leg4;
-            output[0][31] = minus_qd_2_leg4 * minus_gq2_vx_leg4;
+            output[0][39] = -minus_gq2_vx_leg4; // off_2_leg4R
+            output[0][31] = minus_qd_2_leg4 * minus_gq2_vx_leg4; // fv_2_leg4
             let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
-            output[1][39] = -minus_gq2_vy_leg4;
-            output[1][31] = minus_qd_2_leg4 * minus_gq2_vy_leg4;
+            output[1][39] = -minus_gq2_vy_leg4; // off_2_leg4R
+            output[1][31] = minus_qd_2_leg4 * minus_gq2_vy_leg4; // fv_2_leg4
             let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
-            output[2][39] = -minus_gq2_wz_leg4;
-            output[2][31] = minus_qd_2_leg4 * minus_gq2_wz_leg4;
-            output[0][35] = ::overact::math::wide::signed(
+            output[2][39] = -minus_gq2_wz_leg4; // off_2_leg4R
+            output[2][31] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
+            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_vx_leg4,
                 minus_qd_2_leg4,
             );
-            output[1][35] = ::overact::math::wide::signed(
+            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_vy_leg4,
                 minus_qd_2_leg4,
             );
-            output[2][35] = ::overact::math::wide::signed(
+            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
                 minus_gq2_wz_leg4,
                 minus_qd_2_leg4,
             );
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
-            output[0][43] = minus_g2_vx_leg4 * qd_3_leg4;
-            output[0][47] = ::overact::math::wide::signed(
+            output[0][43] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
+            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
                 minus_g2_vx_leg4,
                 qd_3_leg4,
             );
-            output[1][43] = minus_g2_vy_leg4 * qd_3_leg4;
-            output[1][47] = ::overact::math::wide::signed(
+            output[1][43] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
+            output[1][47] = ::overact::math::wide::signed( // fs_3_leg4
                 minus_g2_vy_leg4,
                 qd_3_leg4,
             );
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
-            output[2][43] = qd_3_leg4 * gq3_wz_leg4;
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            output[2][43] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -7326,10 +7326,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7360,9 +7360,9 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            output[0][0] = 0.0;
-            output[1][0] = 0.0;
-            output[2][3] = 0.0;
+            output[0][0] = 0.0; // zz_platformR
+            output[1][0] = 0.0; // zz_platformR
+            output[2][3] = 0.0; // m_platformR
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -7415,23 +7415,23 @@ impl DualV {
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-            output[0][17] = -minus_g1_vx_leg2;
+            output[0][17] = -minus_g1_vx_leg2; // off_1_leg2R
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-            output[0][16] = g1_vx_leg1;
+            output[0][16] = g1_vx_leg1; // off_1_leg1R
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let g1_vx_leg3 = l2_x_leg3 / det_leg3;
-            output[0][18] = g1_vx_leg3;
+            output[0][18] = g1_vx_leg3; // off_1_leg3R
             // --- leg4
             let k1_leg4 = 1.0 / det_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-            output[0][19] = -minus_g1_vx_leg4;
+            output[0][19] = -minus_g1_vx_leg4; // off_1_leg4R
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
             ::overact::guard::platform(
@@ -7442,19 +7442,19 @@ impl DualV {
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-            output[1][17] = -minus_g1_vy_leg2;
+            output[1][17] = -minus_g1_vy_leg2; // off_1_leg2R
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-            output[1][16] = g1_vy_leg1;
+            output[1][16] = g1_vy_leg1; // off_1_leg1R
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let g1_vy_leg3 = l2_y_leg3 / det_leg3;
-            output[1][18] = g1_vy_leg3;
+            output[1][18] = g1_vy_leg3; // off_1_leg3R
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-            output[1][19] = -minus_g1_vy_leg4;
+            output[1][19] = -minus_g1_vy_leg4; // off_1_leg4R
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
@@ -7468,14 +7468,14 @@ impl DualV {
             )?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
-            output[2][17] = g1_wz_leg2;
+            output[2][17] = g1_wz_leg2; // off_1_leg2R
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-            output[2][16] = -minus_g1_wz_leg1;
+            output[2][16] = -minus_g1_wz_leg1; // off_1_leg1R
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-            output[2][18] = g1_wz_leg3;
+            output[2][18] = g1_wz_leg3; // off_1_leg3R
             let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
                 + p_y_leg1 * minus_g1_vx_leg4;
-            output[2][19] = -minus_g1_wz_leg4;
+            output[2][19] = -minus_g1_wz_leg4; // off_1_leg4R
             let s_1_3 = g1_vx_leg3 * g1_wz_leg3
                 - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -7494,50 +7494,50 @@ impl DualV {
                 ::overact::ActuatorGroup::All,
             )?;
             let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
-            output[1][38] = -minus_gq2_vy_leg3;
+            output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
             // --- leg1
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-            output[0][48] = minus_g2_vx_leg1;
+            output[0][48] = minus_g2_vx_leg1; // off_3_leg1R
             let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
-            output[0][36] = -minus_gq2_vx_leg1;
+            output[0][36] = -minus_gq2_vx_leg1; // off_2_leg1R
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-            output[1][48] = minus_g2_vy_leg1;
+            output[1][48] = minus_g2_vy_leg1; // off_3_leg1R
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][36] = -minus_gq2_vy_leg1;
+            output[1][36] = -minus_gq2_vy_leg1; // off_2_leg1R
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
                 + p_y_leg1 * minus_g2_vx_leg1;
             let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
-            output[2][36] = gq2_wz_leg1;
+            output[2][36] = gq2_wz_leg1; // off_2_leg1R
             let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
-            output[2][48] = gq3_wz_leg1;
+            output[2][48] = gq3_wz_leg1; // off_3_leg1R
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
-            output[0][37] = gq2_vx_leg2;
+            output[0][37] = gq2_vx_leg2; // off_2_leg2R
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][37] = gq2_vy_leg2;
+            output[1][37] = gq2_vy_leg2; // off_2_leg2R
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
-            output[2][37] = -minus_gq2_wz_leg2;
+            output[2][37] = -minus_gq2_wz_leg2; // off_2_leg2R
             let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
-            output[0][38] = -minus_gq2_vx_leg3;
+            output[0][38] = -minus_gq2_vx_leg3; // off_2_leg3R
             // --- leg4
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
-            output[0][39] = gq2_vx_leg4;
+            output[0][39] = gq2_vx_leg4; // off_2_leg4R
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
-            output[1][39] = gq2_vy_leg4;
+            output[1][39] = gq2_vy_leg4; // off_2_leg4R
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
-            output[2][39] = gq2_wz_leg4;
+            output[2][39] = gq2_wz_leg4; // off_2_leg4R
             let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
-            output[2][38] = -minus_gq2_wz_leg3;
+            output[2][38] = -minus_gq2_wz_leg3; // off_2_leg3R
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
                 + g1_vx_leg3 * actuator_velocities[2]
@@ -7559,153 +7559,153 @@ impl DualV {
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = g1_vx_leg1 * rate_1_leg1;
-            output[1][8] = g1_vy_leg1 * rate_1_leg1;
-            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1);
-            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1);
-            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
-            output[2][12] = -::overact::math::wide::signed(
+            output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
+            output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
+            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][12] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_wz_leg1,
                 rate_1_leg1,
             );
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2;
-            output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2;
-            output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2);
-            output[0][13] = ::overact::math::wide::signed(
+            output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
+            output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
+            output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
+            output[0][13] = ::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vx_leg2,
                 minus_rate_1_leg2,
             );
-            output[1][13] = ::overact::math::wide::signed(
+            output[1][13] = ::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 minus_rate_1_leg2,
             );
-            output[2][13] = -::overact::math::wide::signed(
+            output[2][13] = -::overact::math::wide::signed( // fs_1_leg2
                 g1_wz_leg2,
                 minus_rate_1_leg2,
             );
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][10] = g1_vx_leg3 * rate_1_leg3;
-            output[1][10] = g1_vy_leg3 * rate_1_leg3;
-            output[2][10] = g1_wz_leg3 * rate_1_leg3;
-            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3);
-            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3);
+            output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+            output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4;
-            output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4;
-            output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4;
-            output[0][15] = ::overact::math::wide::signed(
+            output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][15] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_vx_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][15] = ::overact::math::wide::signed(
+            output[1][15] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_vy_leg4,
                 minus_rate_1_leg4,
             );
-            output[2][15] = ::overact::math::wide::signed(
+            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_wz_leg4,
                 minus_rate_1_leg4,
             );
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][28] = minus_gq2_vx_leg1 * minus_qd_2_leg1;
-            output[0][32] = ::overact::math::wide::signed(
+            output[0][28] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
+            output[0][32] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][28] = minus_gq2_vy_leg1 * minus_qd_2_leg1;
-            output[1][32] = ::overact::math::wide::signed(
+            output[1][28] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
+            output[1][32] = ::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
             );
-            output[2][28] = -(gq2_wz_leg1 * minus_qd_2_leg1);
-            output[2][32] = -::overact::math::wide::signed(
+            output[2][28] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[2][32] = -::overact::math::wide::signed( // fs_2_leg1
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
             );
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][29] = gq2_vx_leg2 * qd_2_leg2;
-            output[0][33] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2);
-            output[1][29] = gq2_vy_leg2 * qd_2_leg2;
-            output[1][33] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
-            output[2][29] = -(minus_gq2_wz_leg2 * qd_2_leg2);
-            output[2][33] = -::overact::math::wide::signed(
+            output[0][29] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
+            output[0][33] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][29] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
+            output[1][33] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[2][29] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
+            output[2][33] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_wz_leg2,
                 qd_2_leg2,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1;
-            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1;
-            output[2][40] = gq3_wz_leg1 * qd_3_leg1;
-            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1);
-            output[0][44] = ::overact::math::wide::signed(
+            output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
+            output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
+            output[2][40] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
+            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vx_leg1,
                 qd_3_leg1,
             );
-            output[1][44] = ::overact::math::wide::signed(
+            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
                 minus_g2_vy_leg1,
                 qd_3_leg1,
             );
             let qd_3_leg2 = wz - rate_2_leg2;
-            output[0][41] = -(g2_vx_leg2 * qd_3_leg2);
-            output[1][41] = -(g2_vy_leg2 * qd_3_leg2);
-            output[0][45] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2);
-            output[1][45] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2);
+            output[0][41] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
+            output[1][41] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
+            output[0][45] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+            output[1][45] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
-            output[2][41] = gq3_wz_leg2 * qd_3_leg2;
-            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2);
+            output[2][41] = gq3_wz_leg2 * qd_3_leg2; // fv_3_leg2
+            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][30] = minus_gq2_vx_leg3 * minus_qd_2_leg3;
-            output[0][34] = ::overact::math::wide::signed(
+            output[0][30] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[0][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][30] = minus_gq2_vy_leg3 * minus_qd_2_leg3;
-            output[1][34] = ::overact::math::wide::signed(
+            output[1][30] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[1][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
             );
-            output[2][30] = minus_gq2_wz_leg3 * minus_qd_2_leg3;
-            output[2][34] = ::overact::math::wide::signed(
+            output[2][30] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
             );
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][31] = gq2_vx_leg4 * qd_2_leg4;
-            output[0][35] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4);
-            output[1][31] = gq2_vy_leg4 * qd_2_leg4;
-            output[1][35] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4);
-            output[2][31] = gq2_wz_leg4 * qd_2_leg4;
-            output[2][35] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4);
+            output[0][31] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
+            output[0][35] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+            output[1][31] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
+            output[1][35] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+            output[2][31] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
+            output[2][35] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3;
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3;
-            output[0][46] = ::overact::math::wide::signed(
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vx_leg3,
                 qd_3_leg3,
             );
-            output[1][46] = ::overact::math::wide::signed(
+            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             );
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
-            output[2][42] = gq3_wz_leg3 * qd_3_leg3;
-            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3);
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
+            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][43] = -(g2_vx_leg4 * qd_3_leg4);
-            output[1][43] = -(g2_vy_leg4 * qd_3_leg4);
-            output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4);
-            output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4);
+            output[0][43] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+            output[1][43] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+            output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             // --- leg2
@@ -7771,13 +7771,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            output[2][0] = dwz;
+            output[2][0] = dwz; // zz_platformR
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
-            output[1][3] = dvy;
+            output[1][3] = dvy; // m_platformR
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            output[0][3] = dvx;
+            output[0][3] = dvx; // m_platformR
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -7785,11 +7785,11 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1;
+            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
@@ -7797,16 +7797,16 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + g2_vx_leg2 * a2_x_leg2);
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            output[0][21] = g2_vx_leg2 * rate_dot_2_leg2;
+            output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+            output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * a2_x_leg1;
             // --- leg3
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
@@ -7815,11 +7815,11 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = (a_on_f2_leg3
                 + rate_2_squared_leg3 * t1_leg3) / det_leg3;
-            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
-            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             // --- leg4
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
@@ -7827,62 +7827,62 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_vx_leg4 * a2_x_leg4);
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4;
+            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vx_leg3 * a2_x_leg3;
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][1] = -minus_mx_platform_on_vx;
-            output[1][2] = -minus_mx_platform_on_vx;
+            output[0][1] = -minus_mx_platform_on_vx; // mx_platform
+            output[1][2] = -minus_mx_platform_on_vx; // my_platformR
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            output[0][2] = my_platform_on_vx;
-            output[1][1] = -my_platform_on_vx;
+            output[0][2] = my_platform_on_vx; // my_platformR
+            output[1][1] = -my_platform_on_vx; // mx_platform
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][1] = a_y_platform;
+            output[2][1] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * dvy + c_phi * dvx;
-            output[2][2] = -a_x_platform;
-            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1;
-            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1);
-            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+            output[2][2] = -a_x_platform; // my_platformR
+            output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
+            output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
+            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vy_leg1 * a2_x_leg1;
-            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
                 + g2_wz_leg1 * a2_x_leg1);
-            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1);
-            output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-            output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2);
-            output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
+            output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
+            output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + g2_vy_leg2 * a2_x_leg2);
-            output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
                 + minus_g2_wz_leg2 * a2_x_leg2;
-            output[1][21] = g2_vy_leg2 * rate_dot_2_leg2;
-            output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2);
-            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3;
-            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3;
-            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            output[1][21] = g2_vy_leg2 * rate_dot_2_leg2; // zz_2_leg2R
+            output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
+            output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_vy_leg3 * a2_x_leg3;
-            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
                 + minus_g2_wz_leg3 * a2_x_leg3;
-            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-            output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-            output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+            output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+            output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_vy_leg4 * a2_x_leg4);
-            output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 + g2_wz_leg4 * a2_x_leg4);
-            output[1][23] = g2_vy_leg4 * rate_dot_2_leg4;
-            output[2][23] = g2_wz_leg4 * rate_dot_2_leg4;
+            output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            output[2][43] = gq3_wz_leg4 * qd_3_leg4;
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4);
+            output[2][43] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -7912,10 +7912,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -7940,22 +7940,22 @@ impl DualV {
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
-            output[0][16] = 1.0;
+            output[0][16] = 1.0; // off_1_leg1R
             output[0][17..19].fill(0.0);
-            output[1][4] = 0.0;
-            output[1][6] = 0.0;
-            output[1][8] = 0.0;
-            output[1][10] = 0.0;
-            output[1][12] = 0.0;
-            output[1][14] = 0.0;
-            output[1][16] = 0.0;
-            output[1][17] = 1.0;
-            output[1][18] = 0.0;
+            output[1][4] = 0.0; // zz_1_leg1R
+            output[1][6] = 0.0; // zz_1_leg3R
+            output[1][8] = 0.0; // fv_1_leg1
+            output[1][10] = 0.0; // fv_1_leg3
+            output[1][12] = 0.0; // fs_1_leg1
+            output[1][14] = 0.0; // fs_1_leg3
+            output[1][16] = 0.0; // off_1_leg1R
+            output[1][17] = 1.0; // off_1_leg2R
+            output[1][18] = 0.0; // off_1_leg3R
             output[2][4..6].fill(0.0);
             output[2][8..10].fill(0.0);
             output[2][12..14].fill(0.0);
             output[2][16..18].fill(0.0);
-            output[2][18] = 1.0;
+            output[2][18] = 1.0; // off_1_leg3R
             output[2][20..22].fill(0.0);
             output[2][24..26].fill(0.0);
             output[2][28..30].fill(0.0);
@@ -8042,67 +8042,67 @@ impl DualV {
             )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][48] = wz_by_a3;
+            output[2][48] = wz_by_a3; // off_3_leg1R
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
-            output[0][0] = wz_by_a1 * acceleration[2];
+            output[0][0] = wz_by_a1 * acceleration[2]; // zz_platformR
             let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
                 * half_per_det_ja;
-            output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
+            output[1][0] = -(minus_wz_by_a2 * acceleration[2]); // zz_platformR
             let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
-            output[2][0] = zz_platform_on_q1_leg3;
+            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
-            output[2][3] = R_P * wz_by_a3_a_x_platform;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
+            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
                 + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
                 * half_per_det_ja;
-            output[0][3] = vx_by_a1 * acceleration[0]
+            output[0][3] = vx_by_a1 * acceleration[0] // m_platformR
                 - minus_vy_by_a1 * acceleration[1];
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
                 * half_per_det_ja;
-            output[1][3] = vx_by_a2 * acceleration[0]
+            output[1][3] = vx_by_a2 * acceleration[0] // m_platformR
                 - minus_vy_by_a2 * acceleration[1];
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = rate_1_leg1;
+            output[0][8] = rate_1_leg1; // fv_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[1][9] = -minus_rate_1_leg2;
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
-            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
+            output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][10] = rate_1_leg3;
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            output[2][10] = rate_1_leg3; // fv_1_leg3
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
                 + minus_wz_by_a2 * a_x_platform;
             let vy_by_a3 = p_x_leg3 * wz_by_a3;
             let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][1] = wz_by_a3 * a_y_platform
+            output[2][1] = wz_by_a3 * a_y_platform // mx_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
                     + vx_by_a3 * inv_r_p_a_arm_y_leg3);
             // --- leg4
@@ -8115,28 +8115,28 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let t2 = minus_g1_vy_leg4 * vy_by_a3 + minus_g1_vx_leg4 * vx_by_a3;
             let minus_g1_a3_leg4 = 2.0 * t2;
-            output[2][19] = -minus_g1_a3_leg4;
+            output[2][19] = -minus_g1_a3_leg4; // off_1_leg4R
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[2][15] = ::overact::math::wide::signed(
+            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             );
             let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][19] = g1_a1_leg4;
-            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
+            output[0][19] = g1_a1_leg4; // off_1_leg4R
+            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][19] = g1_a2_leg4;
-            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
-            output[0][15] = -::overact::math::wide::signed(
+            output[1][19] = g1_a2_leg4; // off_1_leg4R
+            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[0][15] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][15] = -::overact::math::wide::signed(
+            output[1][15] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a2_leg4,
                 minus_rate_1_leg4,
             );
@@ -8146,7 +8146,7 @@ impl DualV {
                 + p_y_leg1 * minus_g2_vx_leg1;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            output[1][36] = g2_a2_leg1;
+            output[1][36] = g2_a2_leg1; // off_2_leg1R
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
@@ -8154,20 +8154,20 @@ impl DualV {
             // --- leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            output[0][36] = off_2_leg1_on_q1_leg1;
-            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][32] = -::overact::math::wide::signed(
+            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            output[2][40] = wz_by_a3 * qd_3_leg1;
-            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
+            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -8177,16 +8177,16 @@ impl DualV {
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-            output[0][4] = rate_dot_1_leg1;
+            output[0][4] = rate_dot_1_leg1; // zz_1_leg1R
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
-            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             // --- leg2
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
@@ -8201,55 +8201,55 @@ impl DualV {
             let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
-            output[0][37] = g2_a1_leg2;
+            output[0][37] = g2_a1_leg2; // off_2_leg2R
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let minus_rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
-            output[1][5] = -minus_rate_dot_1_leg2;
-            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
-            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
+            output[1][5] = -minus_rate_dot_1_leg2; // zz_1_leg2R
+            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2; // zz_2_leg2R
+            output[0][25] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][29] = g2_a1_leg2 * qd_2_leg2;
-            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[0][29] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
+            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            output[0][48] = off_3_leg1_on_q1_leg1;
-            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            output[1][48] = -minus_off_3_leg1_on_q1_leg2;
-            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
+            output[1][48] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1R
+            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
-            output[0][45] = ::overact::math::wide::signed(
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
+            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
             );
-            output[2][41] = wz_by_a3 * qd_3_leg2;
-            output[0][44] = ::overact::math::wide::signed(
+            output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
+            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
-            output[1][44] = -::overact::math::wide::signed(
+            output[1][44] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
-            output[1][37] = off_2_leg2_on_q1_leg2;
-            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
-            output[1][33] = ::overact::math::wide::signed(
+            output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
+            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
+            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
             );
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2);
-            output[1][45] = -::overact::math::wide::signed(
+            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
+            output[1][45] = -::overact::math::wide::signed( // fs_3_leg2
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
             );
@@ -8266,7 +8266,7 @@ impl DualV {
             let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
-            output[2][27] = -(7.142857142857143
+            output[2][27] = -(7.142857142857143 // my_2_leg4
                 * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4));
             // --- leg3
             let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
@@ -8282,124 +8282,124 @@ impl DualV {
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
-            output[2][6] = rate_dot_1_leg3;
+            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let minus_rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
-            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
             let g2_a3_leg4 = 2.0 * t3;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
-            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
-            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
+            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3;
-            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
-            output[2][35] = ::overact::math::wide::signed(
+            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
+            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             );
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
-            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
-            output[2][34] = ::overact::math::wide::signed(
+            output[2][38] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3R
+            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
+            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3;
-            output[2][46] = ::overact::math::wide::signed(
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
+            output[2][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a3_minus_g2_a3_leg3,
                 qd_3_leg3,
             );
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
-            output[2][47] = ::overact::math::wide::signed(
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a3_minus_g2_a3_leg4,
                 qd_3_leg4,
             );
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][38] = g2_a1_leg3;
-            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
+            output[0][38] = g2_a1_leg3; // off_2_leg3R
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][38] = g2_a2_leg3;
-            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            output[1][38] = g2_a2_leg3; // off_2_leg3R
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             let g2_wz_leg4 = g1_wz_leg3 * g2_a3_leg4;
             let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
                 + g2_wz_leg4 * wz_by_a1;
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
                 - g2_wz_leg4 * minus_wz_by_a2;
-            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
-            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
-            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            output[0][26] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
+            output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             // --- leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
-            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1;
-            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            output[0][39] = off_2_leg4_on_q1_leg1; // off_2_leg4R
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2;
-            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
-            output[0][34] = -::overact::math::wide::signed(
+            output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
+            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][34] = -::overact::math::wide::signed(
+            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
-            output[0][35] = ::overact::math::wide::signed(
+            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
             );
-            output[1][35] = ::overact::math::wide::signed(
+            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             );
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
-            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
-            output[0][46] = ::overact::math::wide::signed(
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
+            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
             );
-            output[0][47] = ::overact::math::wide::signed(
+            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
             );
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
-            output[1][46] = -::overact::math::wide::signed(
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
+            output[1][46] = -::overact::math::wide::signed( // fs_3_leg3
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             );
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
-            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
-            output[1][47] = -::overact::math::wide::signed(
+            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
+            output[1][47] = -::overact::math::wide::signed( // fs_3_leg4
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
             );
@@ -8435,10 +8435,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -8470,22 +8470,22 @@ impl DualV {
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
-            output[0][16] = 1.0;
+            output[0][16] = 1.0; // off_1_leg1R
             output[0][17..19].fill(0.0);
-            output[1][4] = 0.0;
-            output[1][6] = 0.0;
-            output[1][8] = 0.0;
-            output[1][10] = 0.0;
-            output[1][12] = 0.0;
-            output[1][14] = 0.0;
-            output[1][16] = 0.0;
-            output[1][17] = 1.0;
-            output[1][18] = 0.0;
+            output[1][4] = 0.0; // zz_1_leg1R
+            output[1][6] = 0.0; // zz_1_leg3R
+            output[1][8] = 0.0; // fv_1_leg1
+            output[1][10] = 0.0; // fv_1_leg3
+            output[1][12] = 0.0; // fs_1_leg1
+            output[1][14] = 0.0; // fs_1_leg3
+            output[1][16] = 0.0; // off_1_leg1R
+            output[1][17] = 1.0; // off_1_leg2R
+            output[1][18] = 0.0; // off_1_leg3R
             output[2][4..6].fill(0.0);
             output[2][8..10].fill(0.0);
             output[2][12..14].fill(0.0);
             output[2][16..18].fill(0.0);
-            output[2][18] = 1.0;
+            output[2][18] = 1.0; // off_1_leg3R
             output[2][20..22].fill(0.0);
             output[2][24..26].fill(0.0);
             output[2][28..30].fill(0.0);
@@ -8536,62 +8536,62 @@ impl DualV {
             )?;
             let inv_det_ja = 1.0 / det_ja;
             let wz_by_a2 = t3 * inv_det_ja;
-            output[1][0] = wz_by_a2 * acceleration[2];
+            output[1][0] = wz_by_a2 * acceleration[2]; // zz_platformR
             let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3
                 + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
             let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
                 * inv_det_ja;
-            output[0][3] = vx_by_a1 * acceleration[0]
+            output[0][3] = vx_by_a1 * acceleration[0] // m_platformR
                 - minus_vy_by_a1 * acceleration[1];
             let minus_vx_by_a2 = t2 * inv_det_ja;
             let vy_by_a2 = t1 * inv_det_ja;
-            output[1][3] = vy_by_a2 * acceleration[1]
+            output[1][3] = vy_by_a2 * acceleration[1] // m_platformR
                 - minus_vx_by_a2 * acceleration[0];
             let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
                 * inv_det_ja;
-            output[0][0] = wz_by_a1 * acceleration[2];
+            output[0][0] = wz_by_a1 * acceleration[2]; // zz_platformR
             let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
                 * inv_det_ja;
-            output[2][48] = -minus_wz_by_a3;
+            output[2][48] = -minus_wz_by_a3; // off_3_leg1R
             let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
-            output[2][0] = -minus_zz_platform_on_q1_leg3;
+            output[2][0] = -minus_zz_platform_on_q1_leg3; // zz_platformR
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
-            output[2][2] = R_P * minus_zz_platform_on_q1_leg3
+            output[2][2] = R_P * minus_zz_platform_on_q1_leg3 // my_platformR
                 + minus_wz_by_a3_a_x_platform;
-            output[2][3] = -(R_P * minus_wz_by_a3_a_x_platform);
+            output[2][3] = -(R_P * minus_wz_by_a3_a_x_platform); // m_platformR
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
             let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = rate_1_leg1;
+            output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
-            output[1][9] = rate_1_leg2;
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][9] = rate_1_leg2; // fv_1_leg2
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][10] = rate_1_leg3;
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
+            output[2][10] = rate_1_leg3; // fv_1_leg3
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+            output[1][1] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 // mx_platform
                 - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
             let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
             let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            output[2][1] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+            output[2][1] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3 // mx_platform
                 + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
                 - minus_wz_by_a3 * a_y_platform;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform);
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
@@ -8599,7 +8599,7 @@ impl DualV {
                 + minus_g2_vx_leg1 * p_y_leg1;
             let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2
                 - minus_g2_vy_leg1 * vy_by_a2 + g2_wz_leg1 * wz_by_a2;
-            output[1][36] = g2_a2_leg1;
+            output[1][36] = g2_a2_leg1; // off_2_leg1R
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
@@ -8612,32 +8612,32 @@ impl DualV {
                 - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + L_AB * rate_1_squared_leg1;
-            output[0][24] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1;
+            output[0][24] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1; // my_2_leg1
             let v2_by_1_y_leg1 = L_AB * c2_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][4] = rate_dot_1_leg1;
+            output[0][4] = rate_dot_1_leg1; // zz_1_leg1R
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
-            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[1][32] = -::overact::math::wide::signed(
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
-            output[1][48] = off_3_leg1_on_q1_leg2;
-            output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2;
-            output[2][40] = -(minus_wz_by_a3 * qd_3_leg1);
-            output[1][44] = ::overact::math::wide::signed(
+            output[1][48] = off_3_leg1_on_q1_leg2; // off_3_leg1R
+            output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
+            output[2][40] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
+            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][44] = -::overact::math::wide::signed(
+            output[2][44] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_wz_by_a3,
                 qd_3_leg1,
             );
@@ -8656,61 +8656,61 @@ impl DualV {
                 + L_AB * rate_1_squared_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
-            output[1][25] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2;
+            output[1][25] = a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             let v2_by_1_y_leg2 = L_AB * c2_leg2;
             let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
-            output[0][37] = g2_a1_leg2;
+            output[0][37] = g2_a1_leg2; // off_2_leg2R
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][21] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
+            output[0][21] = -(g2_a1_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][5] = rate_dot_1_leg2;
-            output[1][21] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
-            output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2);
+            output[1][5] = rate_dot_1_leg2; // zz_1_leg2R
+            output[1][21] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2);
-            output[0][33] = -::overact::math::wide::signed(
+            output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
+            output[0][33] = -::overact::math::wide::signed( // fs_2_leg2
                 g2_a1_leg2,
                 minus_qd_2_leg2,
             );
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
-            output[0][45] = ::overact::math::wide::signed(
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
+            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
             );
-            output[2][41] = -(minus_wz_by_a3 * qd_3_leg2);
-            output[2][45] = -::overact::math::wide::signed(
+            output[2][41] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
+            output[2][45] = -::overact::math::wide::signed( // fs_3_leg2
                 minus_wz_by_a3,
                 qd_3_leg2,
             );
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            output[0][36] = off_2_leg1_on_q1_leg1;
-            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            output[0][48] = off_3_leg1_on_q1_leg1;
-            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
-            output[0][44] = ::overact::math::wide::signed(
+            output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
+            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
-            output[1][37] = off_2_leg2_on_q1_leg2;
-            output[1][29] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2);
-            output[1][33] = -::overact::math::wide::signed(
+            output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
+            output[1][29] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
+            output[1][33] = -::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
             );
             let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
-            output[1][41] = qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2;
-            output[1][45] = ::overact::math::wide::signed(
+            output[1][41] = qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2; // fv_3_leg2
+            output[1][45] = ::overact::math::wide::signed( // fs_3_leg2
                 wz_by_a2_minus_g2_a2_leg2,
                 qd_3_leg2,
             );
@@ -8728,60 +8728,60 @@ impl DualV {
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            output[2][6] = rate_dot_1_leg3;
+            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][38] = g2_a1_leg3;
+            output[0][38] = g2_a1_leg3; // off_2_leg3R
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - minus_g2_vy_leg3 * vy_by_a2 - minus_g2_wz_leg3 * wz_by_a2;
-            output[1][38] = g2_a2_leg3;
-            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
+            output[1][38] = g2_a2_leg3; // off_2_leg3R
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
-            output[2][22] = -(g2_a3_leg3 * minus_rate_dot_2_leg3);
-            output[2][26] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3;
-            output[0][26] = -(g2_a1_leg3 * minus_a_on_f1_leg3);
-            output[1][26] = -(g2_a2_leg3 * minus_a_on_f1_leg3);
+            output[2][22] = -(g2_a3_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
+            output[2][26] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3; // my_2_leg3
+            output[0][26] = -(g2_a1_leg3 * minus_a_on_f1_leg3); // my_2_leg3
+            output[1][26] = -(g2_a2_leg3 * minus_a_on_f1_leg3); // my_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
-            output[0][34] = -::overact::math::wide::signed(
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][34] = -::overact::math::wide::signed(
+            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
-            output[0][46] = ::overact::math::wide::signed(
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
+            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
             );
             let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
-            output[1][42] = qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3;
-            output[1][46] = ::overact::math::wide::signed(
+            output[1][42] = qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3; // fv_3_leg3
+            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a2_minus_g2_a2_leg3,
                 qd_3_leg3,
             );
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
-            output[2][38] = off_2_leg3_on_q1_leg3;
-            output[2][30] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3);
-            output[2][34] = -::overact::math::wide::signed(
+            output[2][38] = off_2_leg3_on_q1_leg3; // off_2_leg3R
+            output[2][30] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
+            output[2][34] = -::overact::math::wide::signed( // fs_2_leg3
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
-            output[2][42] = -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3);
-            output[2][46] = -::overact::math::wide::signed(
+            output[2][42] = -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3); // fv_3_leg3
+            output[2][46] = -::overact::math::wide::signed( // fs_3_leg3
                 g2_a3_minus_wz_by_a3_leg3,
                 qd_3_leg3,
             );
@@ -8794,7 +8794,7 @@ impl DualV {
             let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
             let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
                 + g1_wz_leg4 * wz_by_a1;
-            output[0][19] = g1_a1_leg4;
+            output[0][19] = g1_a1_leg4; // off_1_leg4R
             let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
             let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
@@ -8810,78 +8810,78 @@ impl DualV {
                 - minus_g2_vx_leg4 * vx_by_a1 - minus_g2_wz_leg4 * wz_by_a1;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg4;
-            output[0][27] = g1_a1_leg4 * a_on_f2_leg4
+            output[0][27] = g1_a1_leg4 * a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * minus_a_on_f1_leg4;
             let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
                 + g1_wz_leg4 * wz_by_a2;
-            output[1][19] = g1_a2_leg4;
+            output[1][19] = g1_a2_leg4; // off_1_leg4R
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
-            output[1][27] = g1_a2_leg4 * a_on_f2_leg4
+            output[1][27] = g1_a2_leg4 * a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * minus_a_on_f1_leg4;
             let v2_by_1_y_leg4 = L_AB * c2_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
-            output[0][7] = g1_a1_leg4 * rate_dot_1_leg4;
+            output[0][7] = g1_a1_leg4 * rate_dot_1_leg4; // zz_1_leg4R
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
-            output[0][23] = -(g2_a1_leg4 * minus_rate_dot_2_leg4);
+            output[0][23] = -(g2_a1_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
-            output[2][19] = -minus_g1_a3_leg4;
+            output[2][19] = -minus_g1_a3_leg4; // off_1_leg4R
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            output[2][27] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+            output[2][27] = -(minus_g1_a3_leg4 * a_on_f2_leg4 // my_2_leg4
                 + g2_a3_leg4 * minus_a_on_f1_leg4);
-            output[1][7] = g1_a2_leg4 * rate_dot_1_leg4;
-            output[2][7] = -(minus_g1_a3_leg4 * rate_dot_1_leg4);
-            output[0][11] = g1_a1_leg4 * rate_1_leg4;
-            output[1][11] = g1_a2_leg4 * rate_1_leg4;
-            output[2][11] = -(minus_g1_a3_leg4 * rate_1_leg4);
-            output[0][15] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4);
-            output[1][15] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4);
-            output[2][15] = -::overact::math::wide::signed(
+            output[1][7] = g1_a2_leg4 * rate_dot_1_leg4; // zz_1_leg4R
+            output[2][7] = -(minus_g1_a3_leg4 * rate_dot_1_leg4); // zz_1_leg4R
+            output[0][11] = g1_a1_leg4 * rate_1_leg4; // fv_1_leg4
+            output[1][11] = g1_a2_leg4 * rate_1_leg4; // fv_1_leg4
+            output[2][11] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
+            output[0][15] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][15] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][15] = -::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 rate_1_leg4,
             );
-            output[1][23] = -(g2_a2_leg4 * minus_rate_dot_2_leg4);
-            output[2][23] = -(g2_a3_leg4 * minus_rate_dot_2_leg4);
+            output[1][23] = -(g2_a2_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
+            output[2][23] = -(g2_a3_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1;
-            output[0][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1);
+            output[0][39] = off_2_leg4_on_q1_leg1; // off_2_leg4R
+            output[0][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1); // fv_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
-            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
-            output[0][47] = ::overact::math::wide::signed(
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
+            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
             );
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2;
-            output[1][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2);
+            output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
+            output[1][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2); // fv_2_leg4
             let wz_by_a2_minus_g2_a2_leg4 = wz_by_a2 - g2_a2_leg4;
-            output[1][43] = qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4;
-            output[1][47] = ::overact::math::wide::signed(
+            output[1][43] = qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4; // fv_3_leg4
+            output[1][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a2_minus_g2_a2_leg4,
                 qd_3_leg4,
             );
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3;
-            output[2][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3);
+            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
+            output[2][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
             let g2_a3_minus_wz_by_a3_leg4 = g2_a3_leg4 + minus_wz_by_a3;
-            output[2][43] = -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4);
-            output[2][47] = -::overact::math::wide::signed(
+            output[2][43] = -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4); // fv_3_leg4
+            output[2][47] = -::overact::math::wide::signed( // fs_3_leg4
                 g2_a3_minus_wz_by_a3_leg4,
                 qd_3_leg4,
             );
-            output[0][35] = -::overact::math::wide::signed(
+            output[0][35] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
             );
-            output[1][35] = -::overact::math::wide::signed(
+            output[1][35] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
             );
-            output[2][35] = -::overact::math::wide::signed(
+            output[2][35] = -::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
             );
@@ -8918,10 +8918,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -8955,22 +8955,22 @@ impl DualV {
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
-            output[0][16] = 1.0;
+            output[0][16] = 1.0; // off_1_leg1R
             output[0][17..19].fill(0.0);
-            output[1][4] = 0.0;
-            output[1][6] = 0.0;
-            output[1][8] = 0.0;
-            output[1][10] = 0.0;
-            output[1][12] = 0.0;
-            output[1][14] = 0.0;
-            output[1][16] = 0.0;
-            output[1][17] = 1.0;
-            output[1][18] = 0.0;
+            output[1][4] = 0.0; // zz_1_leg1R
+            output[1][6] = 0.0; // zz_1_leg3R
+            output[1][8] = 0.0; // fv_1_leg1
+            output[1][10] = 0.0; // fv_1_leg3
+            output[1][12] = 0.0; // fs_1_leg1
+            output[1][14] = 0.0; // fs_1_leg3
+            output[1][16] = 0.0; // off_1_leg1R
+            output[1][17] = 1.0; // off_1_leg2R
+            output[1][18] = 0.0; // off_1_leg3R
             output[2][4..6].fill(0.0);
             output[2][8..10].fill(0.0);
             output[2][12..14].fill(0.0);
             output[2][16..18].fill(0.0);
-            output[2][18] = 1.0;
+            output[2][18] = 1.0; // off_1_leg3R
             output[2][20..22].fill(0.0);
             output[2][24..26].fill(0.0);
             output[2][28..30].fill(0.0);
@@ -9109,10 +9109,10 @@ impl DualV {
             )?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
-            output[2][48] = wz_by_a3;
+            output[2][48] = wz_by_a3; // off_3_leg1R
             let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
-            output[2][19] = -minus_g1_a3_leg4;
+            output[2][19] = -minus_g1_a3_leg4; // off_1_leg4R
             let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3
                 - minus_g1_vy_leg2 * g1_vx_leg3) * half_per_det_ja;
             let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3
@@ -9121,7 +9121,7 @@ impl DualV {
                 * half_per_det_ja;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
-            output[0][19] = g1_a1_leg4;
+            output[0][19] = g1_a1_leg4; // off_1_leg4R
             let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
                 * half_per_det_ja;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
@@ -9130,7 +9130,7 @@ impl DualV {
                 * half_per_det_ja;
             let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
-            output[1][19] = g1_a2_leg4;
+            output[1][19] = g1_a2_leg4; // off_1_leg4R
             let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let vy_by_a3 = t3 * half_per_det_ja;
@@ -9138,39 +9138,39 @@ impl DualV {
             let minus_g2_a3_leg3 = 2.0
                 * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][38] = -minus_off_2_leg3_on_q1_leg3;
+            output[2][38] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3R
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][38] = g2_a1_leg3;
+            output[0][38] = g2_a1_leg3; // off_2_leg3R
             let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
                 - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][38] = g2_a2_leg3;
+            output[1][38] = g2_a2_leg3; // off_2_leg3R
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
                 + p_y_leg1 * minus_g2_vx_leg1;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - minus_g2_vx_leg1 * vx_by_a2 - g2_wz_leg1 * minus_wz_by_a2;
-            output[1][36] = g2_a2_leg1;
+            output[1][36] = g2_a2_leg1; // off_2_leg1R
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - minus_g2_vx_leg1 * vx_by_a1 + g2_wz_leg1 * wz_by_a1;
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
-            output[0][36] = off_2_leg1_on_q1_leg1;
+            output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
-            output[0][48] = off_3_leg1_on_q1_leg1;
+            output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
-            output[1][48] = -minus_off_3_leg1_on_q1_leg2;
+            output[1][48] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1R
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
-            output[0][37] = g2_a1_leg2;
+            output[0][37] = g2_a1_leg2; // off_2_leg2R
             let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
-            output[1][37] = off_2_leg2_on_q1_leg2;
+            output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
             let inv_pivot_3 = 1.0 / pivot_3;
             let t4 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -9204,7 +9204,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            output[1][9] = -minus_rate_1_leg2;
+            output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -9220,7 +9220,7 @@ impl DualV {
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            output[0][8] = rate_1_leg1;
+            output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -9238,7 +9238,7 @@ impl DualV {
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[2][10] = rate_1_leg3;
+            output[2][10] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
@@ -9288,7 +9288,7 @@ impl DualV {
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            output[2][27] = -(7.142857142857143
+            output[2][27] = -(7.142857142857143 // my_2_leg4
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
             // --- leg3
@@ -9297,230 +9297,230 @@ impl DualV {
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3;
+            output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
             let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][6] = rate_dot_1_leg3;
+            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3);
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            output[0][4] = rate_dot_1_leg1;
+            output[0][4] = rate_dot_1_leg1; // zz_1_leg1R
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[1][5] = -minus_rate_dot_1_leg2;
+            output[1][5] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][21] = g2_a1_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][1] = wz_by_a3 * a_y_platform
+            output[2][1] = wz_by_a3 * a_y_platform // mx_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
                     + vx_by_a3 * inv_r_p_a_arm_y_leg3);
             let a_x_platform = s_phi * dvy + c_phi * dvx;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2;
+            output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][21] = g2_a2_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
-            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4;
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4);
-            output[1][24] = -(g2_a2_leg1 * a2_x_leg1);
-            output[0][25] = -(g2_a1_leg2 * a2_x_leg2);
-            output[0][0] = wz_by_a1 * dwz;
-            output[1][0] = -(minus_wz_by_a2 * dwz);
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            output[0][25] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
+            output[0][0] = wz_by_a1 * dwz; // zz_platformR
+            output[1][0] = -(minus_wz_by_a2 * dwz); // zz_platformR
             let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            output[2][0] = zz_platform_on_q1_leg3;
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
                 - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
                 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
                 + minus_wz_by_a2 * a_x_platform;
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform);
-            output[2][3] = R_P * wz_by_a3_a_x_platform;
-            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
+            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
+            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy; // m_platformR
+            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy; // m_platformR
             let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
                 + g2_wz_leg4 * wz_by_a1;
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
                 - g2_wz_leg4 * minus_wz_by_a2;
-            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4;
-            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4);
-            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4);
-            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4);
-            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4;
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1);
-            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2);
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3);
-            output[0][15] = -::overact::math::wide::signed(
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
+            output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+            output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[0][15] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][15] = -::overact::math::wide::signed(
+            output[1][15] = -::overact::math::wide::signed( // fs_1_leg4
                 g1_a2_leg4,
                 minus_rate_1_leg4,
             );
-            output[2][15] = ::overact::math::wide::signed(
+            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             );
-            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3);
-            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
-            output[0][26] = -(g2_a1_leg3 * a2_x_leg3);
-            output[1][26] = -(g2_a2_leg3 * a2_x_leg3);
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[0][26] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
+            output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a1_leg4 * a2_x_leg4;
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
                 - g2_a2_leg4 * a2_x_leg4;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1);
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
+            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             );
-            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1);
-            output[1][32] = -::overact::math::wide::signed(
+            output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
+            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            output[0][29] = g2_a1_leg2 * qd_2_leg2;
-            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2;
-            output[1][33] = ::overact::math::wide::signed(
+            output[0][29] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
+            output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
+            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
             );
-            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3);
-            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3);
-            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3;
-            output[2][34] = ::overact::math::wide::signed(
+            output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
+            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             );
             // --- leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1;
-            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1;
+            output[0][39] = off_2_leg4_on_q1_leg1; // off_2_leg4R
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2;
-            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2;
+            output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3;
-            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3;
-            output[0][34] = -::overact::math::wide::signed(
+            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
+            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3,
                 minus_qd_2_leg3,
             );
-            output[1][34] = -::overact::math::wide::signed(
+            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             );
-            output[0][35] = ::overact::math::wide::signed(
+            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
             );
-            output[1][35] = ::overact::math::wide::signed(
+            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             );
-            output[2][35] = ::overact::math::wide::signed(
+            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             );
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1;
-            output[0][44] = ::overact::math::wide::signed(
+            output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
+            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
             );
-            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2);
-            output[1][44] = -::overact::math::wide::signed(
+            output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
+            output[1][44] = -::overact::math::wide::signed( // fs_3_leg1
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             );
-            output[2][40] = wz_by_a3 * qd_3_leg1;
-            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1);
+            output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
+            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
-            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2;
-            output[0][45] = ::overact::math::wide::signed(
+            output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
+            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
             );
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
-            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2);
-            output[1][45] = -::overact::math::wide::signed(
+            output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
+            output[1][45] = -::overact::math::wide::signed( // fs_3_leg2
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
             );
-            output[2][41] = wz_by_a3 * qd_3_leg2;
-            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2);
+            output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
+            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
-            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4;
-            output[0][46] = ::overact::math::wide::signed(
+            output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
+            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
             );
-            output[0][47] = ::overact::math::wide::signed(
+            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
             );
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3);
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
-            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4);
-            output[1][46] = -::overact::math::wide::signed(
+            output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
+            output[1][46] = -::overact::math::wide::signed( // fs_3_leg3
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             );
-            output[1][47] = -::overact::math::wide::signed(
+            output[1][47] = -::overact::math::wide::signed( // fs_3_leg4
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
             );
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3;
-            output[2][46] = ::overact::math::wide::signed(
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
+            output[2][46] = ::overact::math::wide::signed( // fs_3_leg3
                 wz_by_a3_minus_g2_a3_leg3,
                 qd_3_leg3,
             );
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4;
-            output[2][47] = ::overact::math::wide::signed(
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed( // fs_3_leg4
                 wz_by_a3_minus_g2_a3_leg4,
                 qd_3_leg4,
             );
@@ -9553,10 +9553,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_payload`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_payload`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_payload_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9570,31 +9570,31 @@ impl DualV {
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
-        output[0][0] = 0.0;
-        output[0][3] = acceleration[0];
-        output[1][0] = 0.0;
-        output[1][3] = acceleration[1];
-        output[2][0] = acceleration[2];
-        output[2][3] = 0.0;
+        output[0][0] = 0.0; // zz_payload
+        output[0][3] = acceleration[0]; // m_payload
+        output[1][0] = 0.0; // zz_payload
+        output[1][3] = acceleration[1]; // m_payload
+        output[2][0] = acceleration[2]; // zz_payload
+        output[2][3] = 0.0; // m_payload
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- platform
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][1] = a_y_platform;
+        output[2][1] = a_y_platform; // mx_payload
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][2] = -a_x_platform;
+        output[2][2] = -a_x_platform; // my_payload
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][1] = -minus_mx_payload_on_vx;
-        output[1][2] = -minus_mx_payload_on_vx;
+        output[0][1] = -minus_mx_payload_on_vx; // mx_payload
+        output[1][2] = -minus_mx_payload_on_vx; // my_payload
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         output[0][2] = my_payload_on_vx;
-        output[1][1] = -my_payload_on_vx;
+        output[1][1] = -my_payload_on_vx; // mx_payload
         ::core::result::Result::Ok(())
     }
     /// The payload's columns of case 1, eq. (38).
@@ -9626,10 +9626,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_payload_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_payload_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_payload_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -9647,31 +9647,31 @@ impl DualV {
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
-        output[0][0] = 0.0;
-        output[0][3] = acceleration[0];
-        output[1][0] = 0.0;
-        output[1][3] = acceleration[1];
-        output[2][0] = acceleration[2];
-        output[2][3] = 0.0;
+        output[0][0] = 0.0; // zz_payload
+        output[0][3] = acceleration[0]; // m_payload
+        output[1][0] = 0.0; // zz_payload
+        output[1][3] = acceleration[1]; // m_payload
+        output[2][0] = acceleration[2]; // zz_payload
+        output[2][3] = 0.0; // m_payload
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- platform
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        output[2][1] = a_y_platform;
+        output[2][1] = a_y_platform; // mx_payload
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        output[2][2] = -a_x_platform;
+        output[2][2] = -a_x_platform; // my_payload
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let p_x_leg3 = R_P * s_phi;
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
         let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
-        output[0][1] = -minus_mx_payload_on_vx;
-        output[1][2] = -minus_mx_payload_on_vx;
+        output[0][1] = -minus_mx_payload_on_vx; // mx_payload
+        output[1][2] = -minus_mx_payload_on_vx; // my_payload
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         output[0][2] = my_payload_on_vx;
-        output[1][1] = -my_payload_on_vx;
+        output[1][1] = -my_payload_on_vx; // mx_payload
         ::core::result::Result::Ok(())
     }
     /// The payload's columns of case 1, eq. (38).
@@ -9704,10 +9704,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_payload_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_payload_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_payload_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -9736,9 +9736,9 @@ impl DualV {
             const R_P: ::core::primitive::f64 = 0.11;
             /// 2 l_ab²
             const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            output[0][0] = 0.0;
-            output[1][0] = 0.0;
-            output[2][3] = 0.0;
+            output[0][0] = 0.0; // zz_payload
+            output[1][0] = 0.0; // zz_payload
+            output[2][3] = 0.0; // m_payload
             let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
@@ -9967,24 +9967,24 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
-            output[2][0] = dwz;
+            output[2][0] = dwz; // zz_payload
             let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
-            output[1][3] = dvy;
+            output[1][3] = dvy; // m_payload
             let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
-            output[0][3] = dvx;
+            output[0][3] = dvx; // m_payload
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][1] = a_y_platform;
+            output[2][1] = a_y_platform; // mx_payload
             let a_x_platform = s_phi * dvy + c_phi * dvx;
-            output[2][2] = -a_x_platform;
+            output[2][2] = -a_x_platform; // my_payload
             // --- leg1
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][1] = -minus_mx_payload_on_vx;
-            output[1][2] = -minus_mx_payload_on_vx;
+            output[0][1] = -minus_mx_payload_on_vx; // mx_payload
+            output[1][2] = -minus_mx_payload_on_vx; // my_payload
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][2] = my_payload_on_vx;
-            output[1][1] = -my_payload_on_vx;
+            output[1][1] = -my_payload_on_vx; // mx_payload
             ::core::result::Result::Ok(())
         })
     }
@@ -10014,10 +10014,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_payload_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_payload_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_payload_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10095,22 +10095,22 @@ impl DualV {
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
-        output[0][0] = wz_by_a1 * acceleration[2];
+        output[0][0] = wz_by_a1 * acceleration[2]; // zz_payload
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
         let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
             * half_per_det_ja;
-        output[0][3] = vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1];
+        output[0][3] = vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1]; // m_payload
         let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
             * half_per_det_ja;
-        output[1][0] = -(minus_wz_by_a2 * acceleration[2]);
+        output[1][0] = -(minus_wz_by_a2 * acceleration[2]); // zz_payload
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
             * half_per_det_ja;
         let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
             * half_per_det_ja;
-        output[1][3] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1];
+        output[1][3] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1]; // m_payload
         let wz_by_a3 = t1 * half_per_det_ja;
         let zz_payload_on_q1_leg3 = wz_by_a3 * acceleration[2];
         output[2][0] = zz_payload_on_q1_leg3;
@@ -10123,19 +10123,19 @@ impl DualV {
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         let vy_by_a3 = p_x_leg3 * wz_by_a3;
         let vx_by_a3 = p_y_leg1 * wz_by_a3;
-        output[2][1] = wz_by_a3 * a_y_platform
+        output[2][1] = wz_by_a3 * a_y_platform // mx_payload
             - (vy_by_a3 * inv_r_p_a_arm_x_leg1 + vx_by_a3 * inv_r_p_a_arm_y_leg3);
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-        output[2][2] = -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform);
-        output[2][3] = R_P * wz_by_a3_a_x_platform;
-        output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+        output[2][2] = -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform); // my_payload
+        output[2][3] = R_P * wz_by_a3_a_x_platform; // m_payload
+        output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_payload
             - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-        output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+        output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_payload
             + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-        output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+        output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_payload
             - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-        output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+        output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_payload
             + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform;
         ::core::result::Result::Ok(())
     }

@@ -285,10 +285,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -302,9 +302,9 @@ impl Emps {
             ],
         )?;
         output[0][0..2].fill(joint_accelerations[0]);
-        output[0][2] = joint_velocities[0];
-        output[0][4] = 1.0;
-        output[0][3] = ::overact::math::sign(joint_velocities[0]);
+        output[0][2] = joint_velocities[0]; // fv_1
+        output[0][4] = 1.0; // off_1
+        output[0][3] = ::overact::math::sign(joint_velocities[0]); // fs_1
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -333,10 +333,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -349,10 +349,10 @@ impl Emps {
                 ("joint_accelerations", joint_accelerations),
             ],
         )?;
-        output[0][0] = joint_accelerations[0];
-        output[0][1] = joint_velocities[0];
-        output[0][3] = 1.0;
-        output[0][2] = ::overact::math::sign(joint_velocities[0]);
+        output[0][0] = joint_accelerations[0]; // m_1R
+        output[0][1] = joint_velocities[0]; // fv_1
+        output[0][3] = 1.0; // off_1
+        output[0][2] = ::overact::math::sign(joint_velocities[0]); // fs_1
         ::core::result::Result::Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).

@@ -1148,10 +1148,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1177,7 +1177,7 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][24] = acceleration[0];
+            output[0][24] = acceleration[0]; // m_platform
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -1208,25 +1208,25 @@ impl FiveBar {
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][6] = -minus_g1_vy_left;
+            output[1][6] = -minus_g1_vy_left; // off_1_left
             let a1_y_left = 49.05 * l1_x_left;
-            output[1][1] = -(minus_g1_vy_left * a1_y_left);
+            output[1][1] = -(minus_g1_vy_left * a1_y_left); // mx_1_left
             let a1_x_left = 49.05 * l1_y_left;
-            output[1][2] = minus_g1_vy_left * a1_x_left;
+            output[1][2] = minus_g1_vy_left * a1_x_left; // my_1_left
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][6] = -minus_g1_vx_left;
-            output[0][1] = -(minus_g1_vx_left * a1_y_left);
-            output[0][2] = minus_g1_vx_left * a1_x_left;
+            output[0][6] = -minus_g1_vx_left; // off_1_left
+            output[0][1] = -(minus_g1_vx_left * a1_y_left); // mx_1_left
+            output[0][2] = minus_g1_vx_left * a1_x_left; // my_1_left
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
-            output[0][4] = minus_g1_vx_left * minus_rate_1_left;
-            output[1][4] = minus_g1_vy_left * minus_rate_1_left;
-            output[0][5] = ::overact::math::wide::signed(
+            output[0][4] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
+            output[1][4] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
+            output[0][5] = ::overact::math::wide::signed( // fs_1_left
                 minus_g1_vx_left,
                 minus_rate_1_left,
             );
-            output[1][5] = ::overact::math::wide::signed(
+            output[1][5] = ::overact::math::wide::signed( // fs_1_left
                 minus_g1_vy_left,
                 minus_rate_1_left,
             );
@@ -1250,7 +1250,7 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-            output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+            output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left // my_2_left
                 + g2_vx_left * a2_x_left);
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
@@ -1258,30 +1258,30 @@ impl FiveBar {
             output[0][7] = zz_2_left_on_vx;
             let qd_2_left = minus_rate_1_left + rate_2_left;
             let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
-            output[0][11] = d_x_left * t4_left;
-            output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+            output[0][11] = d_x_left * t4_left; // fs_2_left
+            output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left // my_2_left
                 + g2_vy_left * a2_x_left);
             let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
             output[1][7] = zz_2_left_on_vy;
-            output[1][11] = pose[1] * t4_left;
+            output[1][11] = pose[1] * t4_left; // fs_2_left
             let t5_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let minus_m_2_left_on_vy = minus_g1_vy_left * t5_left;
-            output[1][10] = -minus_m_2_left_on_vy;
-            output[1][8] = inv_l_2_m_platform_on_vy
+            output[1][10] = -minus_m_2_left_on_vy; // m_2_left
+            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
                 - 0.16
                     * (1.5625 * zz_2_left_on_vy
                         - INV_L_1_SQUARED * minus_m_2_left_on_vy);
             let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
             output[1][0] = zz_1_left_on_vy;
-            output[1][3] = zz_1_left_on_vy;
+            output[1][3] = zz_1_left_on_vy; // ia_1_left
             let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
             output[0][0] = zz_1_left_on_vx;
-            output[0][3] = zz_1_left_on_vx;
+            output[0][3] = zz_1_left_on_vx; // ia_1_left
             let inv_l_2_dvx = INV_L_2 * acceleration[0];
             let minus_m_2_left_on_vx = minus_g1_vx_left * t5_left;
-            output[0][10] = -minus_m_2_left_on_vx;
-            output[0][8] = inv_l_2_dvx
+            output[0][10] = -minus_m_2_left_on_vx; // m_2_left
+            output[0][8] = inv_l_2_dvx // mx_2_left
                 - 0.16
                     * (1.5625 * zz_2_left_on_vx
                         - INV_L_1_SQUARED * minus_m_2_left_on_vx);
@@ -1291,21 +1291,21 @@ impl FiveBar {
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
-            output[1][18] = g1_vy_right;
+            output[1][18] = g1_vy_right; // off_1_right
             let a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = g1_vy_right * a1_y_right;
+            output[1][13] = g1_vy_right * a1_y_right; // mx_1_right
             let a1_x_right = 49.05 * l1_y_right;
-            output[1][14] = -(g1_vy_right * a1_x_right);
+            output[1][14] = -(g1_vy_right * a1_x_right); // my_1_right
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
-            output[0][18] = g1_vx_right;
-            output[0][13] = g1_vx_right * a1_y_right;
-            output[0][14] = -(g1_vx_right * a1_x_right);
+            output[0][18] = g1_vx_right; // off_1_right
+            output[0][13] = g1_vx_right * a1_y_right; // mx_1_right
+            output[0][14] = -(g1_vx_right * a1_x_right); // my_1_right
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[0][16] = g1_vx_right * rate_1_right;
-            output[1][16] = g1_vy_right * rate_1_right;
-            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
-            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
+            output[0][16] = g1_vx_right * rate_1_right; // fv_1_right
+            output[1][16] = g1_vy_right * rate_1_right; // fv_1_right
+            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
@@ -1326,7 +1326,7 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-            output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+            output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vx_right * a2_x_right;
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
@@ -1334,31 +1334,31 @@ impl FiveBar {
             output[0][19] = zz_2_right_on_vx;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             let t4_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
-            output[0][23] = d_x_right * t4_right;
-            output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+            output[0][23] = d_x_right * t4_right; // fs_2_right
+            output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vy_right * a2_x_right;
             let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
             output[1][19] = zz_2_right_on_vy;
             let t5_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
             let m_2_right_on_vx = g1_vx_right * t5_right;
             output[0][22] = m_2_right_on_vx;
-            output[0][20] = inv_l_2_dvx
+            output[0][20] = inv_l_2_dvx // mx_2_right
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
                         + 1.5625 * zz_2_right_on_vx);
             let m_2_right_on_vy = g1_vy_right * t5_right;
             output[1][22] = m_2_right_on_vy;
-            output[1][20] = inv_l_2_m_platform_on_vy
+            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         + 1.5625 * zz_2_right_on_vy);
-            output[1][23] = pose[1] * t4_right;
+            output[1][23] = pose[1] * t4_right; // fs_2_right
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
-            output[0][15] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx; // ia_1_right
             let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
             output[1][12] = zz_1_right_on_vy;
-            output[1][15] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy; // ia_1_right
             ::core::result::Result::Ok(())
         })
     }
@@ -1391,10 +1391,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -1422,7 +1422,7 @@ impl FiveBar {
             const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
             /// l_2
             const L_2: ::core::primitive::f64 = 0.25;
-            output[0][24] = acceleration[0];
+            output[0][24] = acceleration[0]; // m_platform
             // --- sines and cosines
             let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
             (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
@@ -1436,21 +1436,21 @@ impl FiveBar {
             let c12_left = c1_left * c2_left - s1_left * s2_left;
             let k1_left = INV_L_1 / s2_left;
             let g1_vx_left = c12_left * k1_left;
-            output[0][6] = g1_vx_left;
+            output[0][6] = g1_vx_left; // off_1_left
             let a1_y_left = 9.81 * c1_left;
-            output[0][1] = g1_vx_left * a1_y_left;
+            output[0][1] = g1_vx_left * a1_y_left; // mx_1_left
             let s12_left = s1_left * c2_left + c1_left * s2_left;
             let g1_vy_left = s12_left * k1_left;
-            output[1][6] = g1_vy_left;
-            output[1][1] = g1_vy_left * a1_y_left;
+            output[1][6] = g1_vy_left; // off_1_left
+            output[1][1] = g1_vy_left * a1_y_left; // mx_1_left
             let a1_x_left = 9.81 * s1_left;
-            output[0][2] = -(g1_vx_left * a1_x_left);
-            output[1][2] = -(g1_vy_left * a1_x_left);
+            output[0][2] = -(g1_vx_left * a1_x_left); // my_1_left
+            output[1][2] = -(g1_vy_left * a1_x_left); // my_1_left
             let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-            output[0][4] = g1_vx_left * rate_1_left;
-            output[1][4] = g1_vy_left * rate_1_left;
-            output[0][5] = ::overact::math::wide::signed(g1_vx_left, rate_1_left);
-            output[1][5] = ::overact::math::wide::signed(g1_vy_left, rate_1_left);
+            output[0][4] = g1_vx_left * rate_1_left; // fv_1_left
+            output[1][4] = g1_vy_left * rate_1_left; // fv_1_left
+            output[0][5] = ::overact::math::wide::signed(g1_vx_left, rate_1_left); // fs_1_left
+            output[1][5] = ::overact::math::wide::signed(g1_vy_left, rate_1_left); // fs_1_left
             let k2_left = k1_left * L_1_PER_L_2;
             let minus_g2_vx_left = c1_left * k2_left;
             let minus_g2_vy_left = s1_left * k2_left;
@@ -1474,23 +1474,23 @@ impl FiveBar {
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let m_2_left_on_vy = g1_vy_left * t1_left;
             output[1][10] = m_2_left_on_vy;
-            output[1][8] = inv_l_2_m_platform_on_vy
+            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy);
             let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
             let a2_x_left = a_on_f1_left + s12_left * 9.81;
-            output[0][9] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+            output[0][9] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
                 + minus_g2_vx_left * a2_x_left;
-            output[1][9] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+            output[1][9] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
                 + minus_g2_vy_left * a2_x_left;
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
             let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-            output[1][11] = ::overact::math::wide::signed(
+            output[1][11] = ::overact::math::wide::signed( // fs_2_left
                 minus_gq2_vy_left,
                 minus_qd_2_left,
             );
             let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
-            output[0][11] = ::overact::math::wide::signed(
+            output[0][11] = ::overact::math::wide::signed( // fs_2_left
                 minus_gq2_vx_left,
                 minus_qd_2_left,
             );
@@ -1498,35 +1498,35 @@ impl FiveBar {
             output[0][7] = zz_2_left_on_vx;
             let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
             output[1][0] = zz_1_left_on_vy;
-            output[1][3] = zz_1_left_on_vy;
+            output[1][3] = zz_1_left_on_vy; // ia_1_left
             let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
             output[0][0] = zz_1_left_on_vx;
-            output[0][3] = zz_1_left_on_vx;
+            output[0][3] = zz_1_left_on_vx; // ia_1_left
             let inv_l_2_dvx = INV_L_2 * acceleration[0];
             let m_2_left_on_vx = g1_vx_left * t1_left;
             output[0][10] = m_2_left_on_vx;
-            output[0][8] = inv_l_2_dvx
+            output[0][8] = inv_l_2_dvx // mx_2_left
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx);
             // --- right
             let c12_right = c1_right * c2_right - s1_right * s2_right;
             let k1_right = INV_L_1 / s2_right;
             let g1_vx_right = c12_right * k1_right;
-            output[0][18] = g1_vx_right;
+            output[0][18] = g1_vx_right; // off_1_right
             let a1_y_right = 9.81 * c1_right;
-            output[0][13] = g1_vx_right * a1_y_right;
+            output[0][13] = g1_vx_right * a1_y_right; // mx_1_right
             let s12_right = s1_right * c2_right + c1_right * s2_right;
             let g1_vy_right = s12_right * k1_right;
-            output[1][18] = g1_vy_right;
-            output[1][13] = g1_vy_right * a1_y_right;
+            output[1][18] = g1_vy_right; // off_1_right
+            output[1][13] = g1_vy_right * a1_y_right; // mx_1_right
             let a1_x_right = 9.81 * s1_right;
-            output[0][14] = -(g1_vx_right * a1_x_right);
-            output[1][14] = -(g1_vy_right * a1_x_right);
+            output[0][14] = -(g1_vx_right * a1_x_right); // my_1_right
+            output[1][14] = -(g1_vy_right * a1_x_right); // my_1_right
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[0][16] = g1_vx_right * rate_1_right;
-            output[1][16] = g1_vy_right * rate_1_right;
-            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
-            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
+            output[0][16] = g1_vx_right * rate_1_right; // fv_1_right
+            output[1][16] = g1_vy_right * rate_1_right; // fv_1_right
+            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let k2_right = L_1_PER_L_2 * k1_right;
             let minus_g2_vx_right = c1_right * k2_right;
             let minus_g2_vy_right = s1_right * k2_right;
@@ -1549,7 +1549,7 @@ impl FiveBar {
             let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
             let m_2_right_on_vx = g1_vx_right * t1_right;
             output[0][22] = m_2_right_on_vx;
-            output[0][20] = inv_l_2_dvx
+            output[0][20] = inv_l_2_dvx // mx_2_right
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
                         + 1.5625 * zz_2_right_on_vx);
@@ -1557,33 +1557,33 @@ impl FiveBar {
             output[1][19] = zz_2_right_on_vy;
             let m_2_right_on_vy = g1_vy_right * t1_right;
             output[1][22] = m_2_right_on_vy;
-            output[1][20] = inv_l_2_m_platform_on_vy
+            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         + 1.5625 * zz_2_right_on_vy);
             let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
             let a2_x_right = a_on_f1_right + 9.81 * s12_right;
-            output[0][21] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+            output[0][21] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vx_right * a2_x_right;
-            output[1][21] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+            output[1][21] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vy_right * a2_x_right;
             let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = ::overact::math::wide::signed(
+            output[0][23] = ::overact::math::wide::signed( // fs_2_right
                 minus_gq2_vx_right,
                 minus_qd_2_right,
             );
             let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-            output[1][23] = ::overact::math::wide::signed(
+            output[1][23] = ::overact::math::wide::signed( // fs_2_right
                 minus_gq2_vy_right,
                 minus_qd_2_right,
             );
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
-            output[0][15] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx; // ia_1_right
             let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
             output[1][12] = zz_1_right_on_vy;
-            output[1][15] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy; // ia_1_right
             ::core::result::Result::Ok(())
         })
     }
@@ -1616,10 +1616,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -1679,81 +1679,81 @@ impl FiveBar {
             let l2_x_left = d_x_left - l1_x_left;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][6] = -minus_g1_vx_left;
+            output[0][6] = -minus_g1_vx_left; // off_1_left
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][6] = -minus_g1_vy_left;
+            output[1][6] = -minus_g1_vy_left; // off_1_left
             // --- right
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
-            output[1][18] = g1_vy_right;
+            output[1][18] = g1_vy_right; // off_1_right
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
-            output[0][18] = g1_vx_right;
+            output[0][18] = g1_vx_right; // off_1_right
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 t1,
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
-            output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]);
-            output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]);
-            output[0][5] = -::overact::math::wide::signed(
+            output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]); // fv_1_left
+            output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
+            output[0][5] = -::overact::math::wide::signed( // fs_1_left
                 minus_g1_vx_left,
                 actuator_velocities[0],
             );
-            output[1][5] = -::overact::math::wide::signed(
+            output[1][5] = -::overact::math::wide::signed( // fs_1_left
                 minus_g1_vy_left,
                 actuator_velocities[0],
             );
-            output[0][16] = g1_vx_right * actuator_velocities[1];
-            output[1][16] = g1_vy_right * actuator_velocities[1];
-            output[0][17] = ::overact::math::wide::signed(
+            output[0][16] = g1_vx_right * actuator_velocities[1]; // fv_1_right
+            output[1][16] = g1_vy_right * actuator_velocities[1]; // fv_1_right
+            output[0][17] = ::overact::math::wide::signed( // fs_1_right
                 g1_vx_right,
                 actuator_velocities[1],
             );
-            output[1][17] = ::overact::math::wide::signed(
+            output[1][17] = ::overact::math::wide::signed( // fs_1_right
                 g1_vy_right,
                 actuator_velocities[1],
             );
             // --- left
             let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
-            output[0][0] = -minus_zz_1_left_on_vx;
-            output[0][3] = -minus_zz_1_left_on_vx;
+            output[0][0] = -minus_zz_1_left_on_vx; // zz_1_left
+            output[0][3] = -minus_zz_1_left_on_vx; // ia_1_left
             let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
-            output[1][0] = -minus_zz_1_left_on_vy;
-            output[1][3] = -minus_zz_1_left_on_vy;
+            output[1][0] = -minus_zz_1_left_on_vy; // zz_1_left
+            output[1][3] = -minus_zz_1_left_on_vy; // ia_1_left
             let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][1] = -(minus_g1_vx_left * bias_a1_y_left);
-            output[1][1] = -(minus_g1_vy_left * bias_a1_y_left);
+            output[0][1] = -(minus_g1_vx_left * bias_a1_y_left); // mx_1_left
+            output[1][1] = -(minus_g1_vy_left * bias_a1_y_left); // mx_1_left
             let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = minus_g1_vx_left * bias_a1_x_left;
-            output[1][2] = minus_g1_vy_left * bias_a1_x_left;
+            output[0][2] = minus_g1_vx_left * bias_a1_x_left; // my_1_left
+            output[1][2] = minus_g1_vy_left * bias_a1_x_left; // my_1_left
             // --- right
             let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
             output[0][12] = zz_1_right_on_vx;
-            output[0][15] = zz_1_right_on_vx;
+            output[0][15] = zz_1_right_on_vx; // ia_1_right
             let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
             output[1][12] = zz_1_right_on_vy;
-            output[1][15] = zz_1_right_on_vy;
+            output[1][15] = zz_1_right_on_vy; // ia_1_right
             let bias_a1_y_right = 49.05 * l1_x_right;
-            output[0][13] = g1_vx_right * bias_a1_y_right;
-            output[1][13] = g1_vy_right * bias_a1_y_right;
+            output[0][13] = g1_vx_right * bias_a1_y_right; // mx_1_right
+            output[1][13] = g1_vy_right * bias_a1_y_right; // mx_1_right
             let bias_a1_x_right = 49.05 * l1_y_right;
-            output[0][14] = -(g1_vx_right * bias_a1_x_right);
-            output[1][14] = -(g1_vy_right * bias_a1_x_right);
+            output[0][14] = -(g1_vx_right * bias_a1_x_right); // my_1_right
+            output[1][14] = -(g1_vy_right * bias_a1_x_right); // my_1_right
             // --- left
             let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
                 + L_1 * actuator_accelerations[0];
             let t2_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
             let minus_m_2_left_on_vx = minus_g1_vx_left * t2_left;
-            output[0][10] = -minus_m_2_left_on_vx;
+            output[0][10] = -minus_m_2_left_on_vx; // m_2_left
             let minus_m_2_left_on_vy = minus_g1_vy_left * t2_left;
-            output[1][10] = -minus_m_2_left_on_vy;
+            output[1][10] = -minus_m_2_left_on_vy; // m_2_left
             // --- right
             let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
                 + L_1 * actuator_accelerations[1];
@@ -1775,8 +1775,8 @@ impl FiveBar {
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let qd_2_left = rate_2_left - actuator_velocities[0];
             let t3_left = ::overact::math::wide::sign(qd_2_left) / det_left;
-            output[0][11] = d_x_left * t3_left;
-            output[1][11] = pose[1] * t3_left;
+            output[0][11] = d_x_left * t3_left; // fs_2_left
+            output[1][11] = pose[1] * t3_left; // fs_2_left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
@@ -1802,7 +1802,7 @@ impl FiveBar {
             let minus_dvx = t2
                 * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
-            output[0][24] = -minus_dvx;
+            output[0][24] = -minus_dvx; // m_platform
             let dvy = t2
                 * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
@@ -1815,13 +1815,13 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-            output[0][9] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+            output[0][9] = minus_g1_vx_left * inv_l_2_a_on_f2_left // my_2_left
                 - g2_vx_left * a2_x_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t4_left);
             let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
-            output[0][7] = -minus_zz_2_left_on_vx;
-            output[1][9] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+            output[0][7] = -minus_zz_2_left_on_vx; // zz_2_left
+            output[1][9] = minus_g1_vy_left * inv_l_2_a_on_f2_left // my_2_left
                 - g2_vy_left * a2_x_left;
             // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
@@ -1833,41 +1833,41 @@ impl FiveBar {
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * bias_a1_y_plus_l_1_qdd1_right;
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            output[0][21] = minus_g2_vx_right * a2_x_right
+            output[0][21] = minus_g2_vx_right * a2_x_right // my_2_right
                 - g1_vx_right * inv_l_2_a_on_f2_right;
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
             let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
-            output[0][19] = -minus_zz_2_right_on_vx;
-            output[1][21] = minus_g2_vy_right * a2_x_right
+            output[0][19] = -minus_zz_2_right_on_vx; // zz_2_right
+            output[1][21] = minus_g2_vy_right * a2_x_right // my_2_right
                 - g1_vy_right * inv_l_2_a_on_f2_right;
             let qd_2_right = rate_2_right - actuator_velocities[1];
             let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            output[0][23] = -(d_x_right * t4_right);
+            output[0][23] = -(d_x_right * t4_right); // fs_2_right
             let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
-            output[1][7] = -minus_zz_2_left_on_vy;
+            output[1][7] = -minus_zz_2_left_on_vy; // zz_2_left
             let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
-            output[0][8] = 0.16
+            output[0][8] = 0.16 // mx_2_left
                 * (INV_L_1_SQUARED * minus_m_2_left_on_vx
                     + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx;
-            output[0][20] = -(minus_inv_l_2_dvx
+            output[0][20] = -(minus_inv_l_2_dvx // mx_2_right
                 + 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
                         - 1.5625 * minus_zz_2_right_on_vx));
             let m_platform_on_vy = dvy + 9.81;
             output[1][24] = m_platform_on_vy;
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-            output[1][8] = inv_l_2_m_platform_on_vy
+            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
                 + 0.16
                     * (INV_L_1_SQUARED * minus_m_2_left_on_vy
                         + 1.5625 * minus_zz_2_left_on_vy);
             let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
-            output[1][19] = -minus_zz_2_right_on_vy;
-            output[1][20] = inv_l_2_m_platform_on_vy
+            output[1][19] = -minus_zz_2_right_on_vy; // zz_2_right
+            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         - 1.5625 * minus_zz_2_right_on_vy);
-            output[1][23] = -(pose[1] * t4_right);
+            output[1][23] = -(pose[1] * t4_right); // fs_2_right
             ::core::result::Result::Ok(())
         })
     }
@@ -1897,10 +1897,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1928,12 +1928,12 @@ impl FiveBar {
             const L_2: ::core::primitive::f64 = 0.25;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][6] = 1.0;
+            output[0][6] = 1.0; // off_1_left
             output[0][12..19].fill(0.0);
-            output[0][22] = 0.0;
+            output[0][22] = 0.0; // m_2_right
             output[1][0..7].fill(0.0);
-            output[1][10] = 0.0;
-            output[1][18] = 1.0;
+            output[1][10] = 0.0; // m_2_left
+            output[1][18] = 1.0; // off_1_right
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -1983,19 +1983,19 @@ impl FiveBar {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 49.05 * l1_x_left;
-            output[0][1] = a1_y_left;
+            output[0][1] = a1_y_left; // mx_1_left
             let a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = -a1_x_left;
+            output[0][2] = -a1_x_left; // my_1_left
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
-            output[0][4] = -minus_rate_1_left;
-            output[0][5] = -::overact::math::wide::sign(minus_rate_1_left);
+            output[0][4] = -minus_rate_1_left; // fv_1_left
+            output[0][5] = -::overact::math::wide::sign(minus_rate_1_left); // fs_1_left
             let a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = a1_y_right;
+            output[1][13] = a1_y_right; // mx_1_right
             let a1_x_right = 49.05 * l1_y_right;
-            output[1][14] = -a1_x_right;
+            output[1][14] = -a1_x_right; // my_1_right
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[1][16] = rate_1_right;
+            output[1][16] = rate_1_right; // fv_1_right
             // --- left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
@@ -2008,8 +2008,8 @@ impl FiveBar {
             let t3_left = 0.5 * t2_left;
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t3_left);
-            output[0][0] = -minus_rate_dot_1_left;
-            output[0][3] = -minus_rate_dot_1_left;
+            output[0][0] = -minus_rate_dot_1_left; // zz_1_left
+            output[0][3] = -minus_rate_dot_1_left; // ia_1_left
             let inv_det_ja = 1.0 / det_ja;
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
@@ -2022,19 +2022,19 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-            output[0][9] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
+            output[0][9] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
             output[0][7] = zz_2_left_on_q1_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][11] = ::overact::math::wide::signed(
+            output[0][11] = ::overact::math::wide::signed( // fs_2_left
                 g2_a1_left - 1.0,
                 qd_2_left,
             );
             let g2_a2_left = k_left * inv_det_ja;
-            output[1][9] = -(g2_a2_left * a2_x_left);
-            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            output[1][9] = -(g2_a2_left * a2_x_left); // my_2_left
+            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
             output[1][7] = zz_2_left_on_q1_right;
             let t1_platform = acceleration[1] + 9.81;
@@ -2042,18 +2042,18 @@ impl FiveBar {
                 - minus_vx_by_a1 * acceleration[0];
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left
+            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
                         + 1.5625 * zz_2_left_on_q1_left);
-            output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left;
+            output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left; // m_2_left
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
             let m_platform_on_q1_right = vy_by_a2 * t1_platform
                 - minus_vx_by_a2 * acceleration[0];
             output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            output[1][8] = inv_l_2_m_platform_on_q1_right
+            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
                 - L_2 * zz_2_left_on_q1_right;
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
@@ -2068,8 +2068,8 @@ impl FiveBar {
             let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
                 * (a_on_f1_right + rate_1_squared_right * t3_right);
-            output[1][12] = rate_dot_1_right;
-            output[1][15] = rate_dot_1_right;
+            output[1][12] = rate_dot_1_right; // zz_1_right
+            output[1][15] = rate_dot_1_right; // ia_1_right
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
@@ -2079,32 +2079,32 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-            output[1][21] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right;
+            output[1][21] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right; // my_2_right
             let g2_a1_right = k_right * inv_det_ja;
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
-            output[0][19] = -minus_zz_2_right_on_q1_left;
-            output[0][20] = inv_l_2_m_platform_on_q1_left
+            output[0][19] = -minus_zz_2_right_on_q1_left; // zz_2_right
+            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
                 + L_2 * minus_zz_2_right_on_q1_left;
             let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
-            output[1][19] = -minus_zz_2_right_on_q1_right;
-            output[1][20] = inv_l_2_m_platform_on_q1_right
+            output[1][19] = -minus_zz_2_right_on_q1_right; // zz_2_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
                         - 1.5625 * minus_zz_2_right_on_q1_right);
-            output[0][21] = -(g2_a1_right * a2_x_right);
-            output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+            output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
+            output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed(
+            output[0][23] = -::overact::math::wide::signed( // fs_2_right
                 g2_a1_right,
                 minus_qd_2_right,
             );
-            output[1][23] = -::overact::math::wide::signed(
+            output[1][23] = -::overact::math::wide::signed( // fs_2_right
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
             );
-            output[1][17] = ::overact::math::wide::sign(rate_1_right);
+            output[1][17] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
             ::core::result::Result::Ok(())
         })
     }
@@ -2137,10 +2137,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2166,12 +2166,12 @@ impl FiveBar {
             const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
             /// l_2
             const L_2: ::core::primitive::f64 = 0.25;
-            output[0][6] = 1.0;
+            output[0][6] = 1.0; // off_1_left
             output[0][12..19].fill(0.0);
-            output[0][22] = 0.0;
+            output[0][22] = 0.0; // m_2_right
             output[1][0..7].fill(0.0);
-            output[1][10] = 0.0;
-            output[1][18] = 1.0;
+            output[1][10] = 0.0; // m_2_left
+            output[1][18] = 1.0; // off_1_right
             // --- sines and cosines
             let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
             (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
@@ -2195,13 +2195,13 @@ impl FiveBar {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 9.81 * c1_left;
-            output[0][1] = a1_y_left;
+            output[0][1] = a1_y_left; // mx_1_left
             let a1_x_left = 9.81 * s1_left;
-            output[0][2] = -a1_x_left;
+            output[0][2] = -a1_x_left; // my_1_left
             let a1_y_right = 9.81 * c1_right;
-            output[1][13] = a1_y_right;
+            output[1][13] = a1_y_right; // mx_1_right
             let a1_x_right = 9.81 * s1_right;
-            output[1][14] = -a1_x_right;
+            output[1][14] = -a1_x_right; // my_1_right
             // --- left
             let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
                 + s1_left * acceleration[1];
@@ -2211,7 +2211,7 @@ impl FiveBar {
             let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
             let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
             let rate_1_left = INV_L_1 * t2_left;
-            output[0][4] = rate_1_left;
+            output[0][4] = rate_1_left; // fv_1_left
             let t3_left = t2_left * rate_1_left;
             let k2_left = INV_L_2 * inv_s2_left;
             let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
@@ -2228,23 +2228,23 @@ impl FiveBar {
             let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
             let t5_left = a1_y_left + t4_left;
             let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
-            output[0][9] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
-            output[0][5] = ::overact::math::wide::sign(t2_left);
+            output[0][9] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
+            output[0][5] = ::overact::math::wide::sign(t2_left); // fs_1_left
             let rate_dot_1_left = INV_L_1 * t4_left;
-            output[0][0] = rate_dot_1_left;
-            output[0][3] = rate_dot_1_left;
+            output[0][0] = rate_dot_1_left; // zz_1_left
+            output[0][3] = rate_dot_1_left; // ia_1_left
             let minus_rate_dot_2_left = k2_left
                 * (a_on_f2_left + t1_left * minus_rate_2_left);
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-            output[0][7] = -minus_zz_2_left_on_q1_left;
+            output[0][7] = -minus_zz_2_left_on_q1_left; // zz_2_left
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-            output[0][11] = -::overact::math::wide::signed(
+            output[0][11] = -::overact::math::wide::signed( // fs_2_left
                 g2_a1_left - 1.0,
                 minus_qd_2_left,
             );
             let minus_g2_a2_left = k2_left * l_1_per_det_ja;
-            output[1][9] = minus_g2_a2_left * a2_x_left;
-            output[1][11] = ::overact::math::wide::signed(
+            output[1][9] = minus_g2_a2_left * a2_x_left; // my_2_left
+            output[1][11] = ::overact::math::wide::signed( // fs_2_left
                 minus_g2_a2_left,
                 minus_qd_2_left,
             );
@@ -2255,16 +2255,16 @@ impl FiveBar {
                 - minus_vx_by_a1 * acceleration[0];
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left
+            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
                 - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left);
-            output[0][10] = L_1 * t5_left;
+            output[0][10] = L_1 * t5_left; // m_2_left
             let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
             let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
             let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
                 - minus_vy_by_a2 * t1_platform;
             output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            output[1][8] = inv_l_2_m_platform_on_q1_right
+            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
                 - L_2 * zz_2_left_on_q1_right;
             // --- right
             let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
@@ -2275,7 +2275,7 @@ impl FiveBar {
             let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
             let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
             let rate_1_right = INV_L_1 * t2_right;
-            output[1][16] = rate_1_right;
+            output[1][16] = rate_1_right; // fv_1_right
             let t3_right = t2_right * rate_1_right;
             let k2_right = INV_L_2 * inv_s2_right;
             let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
@@ -2290,34 +2290,34 @@ impl FiveBar {
             let t5_right = a1_y_right + t4_right;
             let a2_x_right = c2_right * (a1_x_right - t3_right)
                 + s2_right * t5_right;
-            output[1][21] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right;
+            output[1][21] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right; // my_2_right
             let g2_a1_right = l_1_per_det_ja * k2_right;
             let minus_rate_dot_2_right = k2_right
                 * (a_on_f2_right + t1_right * minus_rate_2_right);
             let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
-            output[0][19] = -minus_zz_2_right_on_q1_left;
-            output[0][20] = inv_l_2_m_platform_on_q1_left
+            output[0][19] = -minus_zz_2_right_on_q1_left; // zz_2_right
+            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
                 + L_2 * minus_zz_2_right_on_q1_left;
-            output[1][17] = ::overact::math::wide::sign(t2_right);
+            output[1][17] = ::overact::math::wide::sign(t2_right); // fs_1_right
             let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
-            output[1][19] = -minus_zz_2_right_on_q1_right;
-            output[1][20] = inv_l_2_m_platform_on_q1_right
+            output[1][19] = -minus_zz_2_right_on_q1_right; // zz_2_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
                 - 0.16
                     * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right);
-            output[0][21] = -(g2_a1_right * a2_x_right);
-            output[1][22] = L_1 * t5_right;
+            output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
+            output[1][22] = L_1 * t5_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed(
+            output[0][23] = -::overact::math::wide::signed( // fs_2_right
                 g2_a1_right,
                 minus_qd_2_right,
             );
-            output[1][23] = -::overact::math::wide::signed(
+            output[1][23] = -::overact::math::wide::signed( // fs_2_right
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
             );
             let rate_dot_1_right = INV_L_1 * t4_right;
-            output[1][12] = rate_dot_1_right;
-            output[1][15] = rate_dot_1_right;
+            output[1][12] = rate_dot_1_right; // zz_1_right
+            output[1][15] = rate_dot_1_right; // ia_1_right
             ::core::result::Result::Ok(())
         })
     }
@@ -2350,10 +2350,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2390,18 +2390,18 @@ impl FiveBar {
             const L_2: ::core::primitive::f64 = 0.25;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][0] = actuator_accelerations[0];
-            output[0][3] = actuator_accelerations[0];
-            output[0][4] = actuator_velocities[0];
-            output[0][6] = 1.0;
+            output[0][0] = actuator_accelerations[0]; // zz_1_left
+            output[0][3] = actuator_accelerations[0]; // ia_1_left
+            output[0][4] = actuator_velocities[0]; // fv_1_left
+            output[0][6] = 1.0; // off_1_left
             output[0][12..19].fill(0.0);
-            output[0][22] = 0.0;
+            output[0][22] = 0.0; // m_2_right
             output[1][0..7].fill(0.0);
-            output[1][10] = 0.0;
-            output[1][12] = actuator_accelerations[1];
-            output[1][15] = actuator_accelerations[1];
-            output[1][16] = actuator_velocities[1];
-            output[1][18] = 1.0;
+            output[1][10] = 0.0; // m_2_left
+            output[1][12] = actuator_accelerations[1]; // zz_1_right
+            output[1][15] = actuator_accelerations[1]; // ia_1_right
+            output[1][16] = actuator_velocities[1]; // fv_1_right
+            output[1][18] = 1.0; // off_1_right
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2453,15 +2453,15 @@ impl FiveBar {
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
-            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]);
-            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]);
+            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
+            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][1] = bias_a1_y_left;
+            output[0][1] = bias_a1_y_left; // mx_1_left
             let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
                 + L_1 * actuator_accelerations[0];
-            output[0][10] = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+            output[0][10] = L_1 * bias_a1_y_plus_l_1_qdd1_left; // m_2_left
             let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][2] = -bias_a1_x_left;
+            output[0][2] = -bias_a1_x_left; // my_1_left
             let inv_det_ja = 1.0 / det_ja;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
@@ -2471,14 +2471,14 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-            output[1][9] = -(g2_a2_left * a2_x_left);
+            output[1][9] = -(g2_a2_left * a2_x_left); // my_2_left
             let bias_a1_y_right = 49.05 * l1_x_right;
-            output[1][13] = bias_a1_y_right;
+            output[1][13] = bias_a1_y_right; // mx_1_right
             let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
                 + L_1 * actuator_accelerations[1];
-            output[1][22] = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+            output[1][22] = L_1 * bias_a1_y_plus_l_1_qdd1_right; // m_2_right
             let bias_a1_x_right = 49.05 * l1_y_right;
-            output[1][14] = -bias_a1_x_right;
+            output[1][14] = -bias_a1_x_right; // my_1_right
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
             let t2_right = rho_squared_right - 0.1025;
@@ -2488,7 +2488,7 @@ impl FiveBar {
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-            output[0][21] = -(g2_a1_right * a2_x_right);
+            output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
             let g2_vy_left = l1_y_left * k_left;
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let g2_vx_left = l1_x_left * k_left;
@@ -2533,7 +2533,7 @@ impl FiveBar {
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
-            output[0][7] = -minus_zz_2_left_on_q1_left;
+            output[0][7] = -minus_zz_2_left_on_q1_left; // zz_2_left
             let t1_platform = dvy + 9.81;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
@@ -2550,7 +2550,7 @@ impl FiveBar {
                 - minus_g2_vy_right * vy_by_a2;
             let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
             output[1][19] = zz_2_right_on_q1_right;
-            output[1][20] = inv_l_2_m_platform_on_q1_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
                 - 0.16
                     * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
                         + 1.5625 * zz_2_right_on_q1_right);
@@ -2558,29 +2558,29 @@ impl FiveBar {
                 + vy_by_a1 * t1_platform;
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left
+            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
                 - 0.16
                     * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
                         - 1.5625 * minus_zz_2_left_on_q1_left);
-            output[0][9] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left);
-            output[1][21] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right);
+            output[0][9] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left); // my_2_left
+            output[1][21] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right); // my_2_right
             let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
-            output[1][7] = -minus_zz_2_left_on_q1_right;
-            output[1][8] = inv_l_2_m_platform_on_q1_right
+            output[1][7] = -minus_zz_2_left_on_q1_right; // zz_2_left
+            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
                 + L_2 * minus_zz_2_left_on_q1_right;
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][11] = ::overact::math::wide::signed(
+            output[0][11] = ::overact::math::wide::signed( // fs_2_left
                 g2_a1_left - 1.0,
                 qd_2_left,
             );
-            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
             output[0][19] = zz_2_right_on_q1_left;
-            output[0][20] = inv_l_2_m_platform_on_q1_left
+            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
                 - L_2 * zz_2_right_on_q1_left;
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            output[0][23] = ::overact::math::wide::signed(g2_a1_right, qd_2_right);
-            output[1][23] = ::overact::math::wide::signed(
+            output[0][23] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
+            output[1][23] = ::overact::math::wide::signed( // fs_2_right
                 g2_a2_right - 1.0,
                 qd_2_right,
             );
@@ -2613,10 +2613,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2640,7 +2640,7 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][0] = acceleration[0];
+            output[0][0] = acceleration[0]; // m_platformR
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
@@ -2663,32 +2663,32 @@ impl FiveBar {
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-            output[1][0] = acceleration[1] + 9.81;
+            output[1][0] = acceleration[1] + 9.81; // m_platformR
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let k_left = 1.0 / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][11] = -minus_g1_vy_left;
+            output[1][11] = -minus_g1_vy_left; // off_1_left
             let a1_y_left = 49.05 * l1_x_left;
-            output[1][3] = -(minus_g1_vy_left * a1_y_left);
+            output[1][3] = -(minus_g1_vy_left * a1_y_left); // mx_1_leftR
             let a1_x_left = 49.05 * l1_y_left;
-            output[1][5] = minus_g1_vy_left * a1_x_left;
+            output[1][5] = minus_g1_vy_left * a1_x_left; // my_1_left
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][11] = -minus_g1_vx_left;
-            output[0][3] = -(minus_g1_vx_left * a1_y_left);
-            output[0][5] = minus_g1_vx_left * a1_x_left;
+            output[0][11] = -minus_g1_vx_left; // off_1_left
+            output[0][3] = -(minus_g1_vx_left * a1_y_left); // mx_1_leftR
+            output[0][5] = minus_g1_vx_left * a1_x_left; // my_1_left
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
-            output[0][7] = minus_g1_vx_left * minus_rate_1_left;
-            output[1][7] = minus_g1_vy_left * minus_rate_1_left;
-            output[0][9] = ::overact::math::wide::signed(
+            output[0][7] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
+            output[1][7] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
+            output[0][9] = ::overact::math::wide::signed( // fs_1_left
                 minus_g1_vx_left,
                 minus_rate_1_left,
             );
-            output[1][9] = ::overact::math::wide::signed(
+            output[1][9] = ::overact::math::wide::signed( // fs_1_left
                 minus_g1_vy_left,
                 minus_rate_1_left,
             );
@@ -2710,41 +2710,41 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            output[0][15] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+            output[0][15] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left // my_2_left
                 + g2_vx_left * a2_x_left);
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-            output[0][13] = g2_vx_left * rate_dot_2_left;
+            output[0][13] = g2_vx_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
             let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
-            output[0][17] = d_x_left * t4_left;
-            output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+            output[0][17] = d_x_left * t4_left; // fs_2_left
+            output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left // my_2_left
                 + g2_vy_left * a2_x_left);
-            output[1][13] = g2_vy_left * rate_dot_2_left;
-            output[0][1] = minus_g1_vx_left * minus_rate_dot_1_left;
-            output[1][1] = minus_g1_vy_left * minus_rate_dot_1_left;
-            output[1][17] = pose[1] * t4_left;
+            output[1][13] = g2_vy_left * rate_dot_2_left; // zz_2_leftR
+            output[0][1] = minus_g1_vx_left * minus_rate_dot_1_left; // zz_1_leftR
+            output[1][1] = minus_g1_vy_left * minus_rate_dot_1_left; // zz_1_leftR
+            output[1][17] = pose[1] * t4_left; // fs_2_left
             // --- right
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let k_right = 1.0 / det_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let g1_vy_right = l2_y_right * k_right;
-            output[1][12] = g1_vy_right;
+            output[1][12] = g1_vy_right; // off_1_right
             let a1_y_right = 49.05 * l1_x_right;
-            output[1][4] = g1_vy_right * a1_y_right;
+            output[1][4] = g1_vy_right * a1_y_right; // mx_1_rightR
             let a1_x_right = 49.05 * l1_y_right;
-            output[1][6] = -(g1_vy_right * a1_x_right);
+            output[1][6] = -(g1_vy_right * a1_x_right); // my_1_right
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
-            output[0][12] = g1_vx_right;
-            output[0][4] = g1_vx_right * a1_y_right;
-            output[0][6] = -(g1_vx_right * a1_x_right);
+            output[0][12] = g1_vx_right; // off_1_right
+            output[0][4] = g1_vx_right * a1_y_right; // mx_1_rightR
+            output[0][6] = -(g1_vx_right * a1_x_right); // my_1_right
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[0][8] = g1_vx_right * rate_1_right;
-            output[1][8] = g1_vy_right * rate_1_right;
-            output[0][10] = ::overact::math::wide::signed(g1_vx_right, rate_1_right);
-            output[1][10] = ::overact::math::wide::signed(g1_vy_right, rate_1_right);
+            output[0][8] = g1_vx_right * rate_1_right; // fv_1_right
+            output[1][8] = g1_vy_right * rate_1_right; // fv_1_right
+            output[0][10] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][10] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
@@ -2764,20 +2764,20 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            output[0][16] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+            output[0][16] = g1_vx_right * minus_inv_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vx_right * a2_x_right;
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-            output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right;
+            output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right; // zz_2_rightR
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             let t4_right = ::overact::math::wide::signed(k_right, minus_qd_2_right);
-            output[0][18] = d_x_right * t4_right;
-            output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+            output[0][18] = d_x_right * t4_right; // fs_2_right
+            output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right // my_2_right
                 + minus_g2_vy_right * a2_x_right;
-            output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right;
-            output[0][2] = g1_vx_right * rate_dot_1_right;
-            output[1][2] = g1_vy_right * rate_dot_1_right;
-            output[1][18] = pose[1] * t4_right;
+            output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right; // zz_2_rightR
+            output[0][2] = g1_vx_right * rate_dot_1_right; // zz_1_rightR
+            output[1][2] = g1_vy_right * rate_dot_1_right; // zz_1_rightR
+            output[1][18] = pose[1] * t4_right; // fs_2_right
             ::core::result::Result::Ok(())
         })
     }
@@ -2810,10 +2810,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2835,7 +2835,7 @@ impl FiveBar {
         const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
-        output[0][0] = acceleration[0];
+        output[0][0] = acceleration[0]; // m_platformR
         // --- sines and cosines
         let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
         (s1_right, c1_right)] = ::overact::math::sin_cos_all([
@@ -2843,45 +2843,45 @@ impl FiveBar {
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        output[1][0] = acceleration[1] + 9.81;
+        output[1][0] = acceleration[1] + 9.81; // m_platformR
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
-        output[0][11] = g1_vx_left;
+        output[0][11] = g1_vx_left; // off_1_left
         let a1_y_left = 9.81 * c1_left;
-        output[0][3] = g1_vx_left * a1_y_left;
+        output[0][3] = g1_vx_left * a1_y_left; // mx_1_leftR
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let g1_vy_left = s12_left * k1_left;
-        output[1][11] = g1_vy_left;
-        output[1][3] = g1_vy_left * a1_y_left;
+        output[1][11] = g1_vy_left; // off_1_left
+        output[1][3] = g1_vy_left * a1_y_left; // mx_1_leftR
         let a1_x_left = 9.81 * s1_left;
-        output[0][5] = -(g1_vx_left * a1_x_left);
-        output[1][5] = -(g1_vy_left * a1_x_left);
+        output[0][5] = -(g1_vx_left * a1_x_left); // my_1_left
+        output[1][5] = -(g1_vy_left * a1_x_left); // my_1_left
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        output[0][7] = g1_vx_left * rate_1_left;
-        output[1][7] = g1_vy_left * rate_1_left;
-        output[0][9] = ::overact::math::signed(g1_vx_left, rate_1_left);
-        output[1][9] = ::overact::math::signed(g1_vy_left, rate_1_left);
+        output[0][7] = g1_vx_left * rate_1_left; // fv_1_left
+        output[1][7] = g1_vy_left * rate_1_left; // fv_1_left
+        output[0][9] = ::overact::math::signed(g1_vx_left, rate_1_left); // fs_1_left
+        output[1][9] = ::overact::math::signed(g1_vy_left, rate_1_left); // fs_1_left
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let k1_right = INV_L_1 / s2_right;
         let g1_vx_right = c12_right * k1_right;
-        output[0][12] = g1_vx_right;
+        output[0][12] = g1_vx_right; // off_1_right
         let a1_y_right = 9.81 * c1_right;
-        output[0][4] = g1_vx_right * a1_y_right;
+        output[0][4] = g1_vx_right * a1_y_right; // mx_1_rightR
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let g1_vy_right = s12_right * k1_right;
-        output[1][12] = g1_vy_right;
-        output[1][4] = g1_vy_right * a1_y_right;
+        output[1][12] = g1_vy_right; // off_1_right
+        output[1][4] = g1_vy_right * a1_y_right; // mx_1_rightR
         let a1_x_right = 9.81 * s1_right;
-        output[0][6] = -(g1_vx_right * a1_x_right);
-        output[1][6] = -(g1_vy_right * a1_x_right);
+        output[0][6] = -(g1_vx_right * a1_x_right); // my_1_right
+        output[1][6] = -(g1_vy_right * a1_x_right); // my_1_right
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        output[0][8] = g1_vx_right * rate_1_right;
-        output[1][8] = g1_vy_right * rate_1_right;
-        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right);
-        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right);
+        output[0][8] = g1_vx_right * rate_1_right; // fv_1_right
+        output[1][8] = g1_vy_right * rate_1_right; // fv_1_right
+        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right); // fs_1_right
+        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right); // fs_1_right
         // --- left
         let k2_left = k1_left * L_1_PER_L_2;
         let minus_g2_vx_left = c1_left * k2_left;
@@ -2896,25 +2896,25 @@ impl FiveBar {
             + l_1_rate_1_squared_left;
         let minus_rate_dot_2_left = k2_left
             * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        output[0][13] = minus_g2_vx_left * minus_rate_dot_2_left;
+        output[0][13] = minus_g2_vx_left * minus_rate_dot_2_left; // zz_2_leftR
         let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
             + l_2_rate_2_squared_left;
         let rate_dot_1_left = k1_left
             * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
-        output[0][1] = g1_vx_left * rate_dot_1_left;
-        output[1][1] = g1_vy_left * rate_dot_1_left;
-        output[1][13] = minus_g2_vy_left * minus_rate_dot_2_left;
+        output[0][1] = g1_vx_left * rate_dot_1_left; // zz_1_leftR
+        output[1][1] = g1_vy_left * rate_dot_1_left; // zz_1_leftR
+        output[1][13] = minus_g2_vy_left * minus_rate_dot_2_left; // zz_2_leftR
         let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
         let a2_x_left = a_on_f1_left + s12_left * 9.81;
-        output[0][15] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+        output[0][15] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
             + minus_g2_vx_left * a2_x_left;
         let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        output[0][17] = ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left);
-        output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+        output[0][17] = ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left); // fs_2_left
+        output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
             + minus_g2_vy_left * a2_x_left;
         let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-        output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left);
+        output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left); // fs_2_left
         // --- right
         let k2_right = k1_right * L_1_PER_L_2;
         let minus_g2_vx_right = c1_right * k2_right;
@@ -2929,25 +2929,25 @@ impl FiveBar {
             + l_1_rate_1_squared_right;
         let minus_rate_dot_2_right = k2_right
             * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
-        output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right;
+        output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right; // zz_2_rightR
         let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
             + l_2_rate_2_squared_right;
         let rate_dot_1_right = k1_right
             * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-        output[0][2] = g1_vx_right * rate_dot_1_right;
-        output[1][2] = g1_vy_right * rate_dot_1_right;
-        output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right;
+        output[0][2] = g1_vx_right * rate_dot_1_right; // zz_1_rightR
+        output[1][2] = g1_vy_right * rate_dot_1_right; // zz_1_rightR
+        output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right; // zz_2_rightR
         let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
         let a2_x_right = a_on_f1_right + s12_right * 9.81;
-        output[0][16] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+        output[0][16] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
             + minus_g2_vx_right * a2_x_right;
         let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        output[0][18] = ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right);
-        output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+        output[0][18] = ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right); // fs_2_right
+        output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
             + minus_g2_vy_right * a2_x_right;
         let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-        output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right);
+        output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -2979,10 +2979,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3039,63 +3039,63 @@ impl FiveBar {
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
-            output[1][12] = g1_vy_right;
+            output[1][12] = g1_vy_right; // off_1_right
             let k_left = 1.0 / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
-            output[0][12] = g1_vx_right;
+            output[0][12] = g1_vx_right; // off_1_right
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left * k_left;
-            output[0][11] = -minus_g1_vx_left;
+            output[0][11] = -minus_g1_vx_left; // off_1_left
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left * k_left;
-            output[1][11] = -minus_g1_vy_left;
+            output[1][11] = -minus_g1_vy_left; // off_1_left
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 t1,
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
-            output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]);
-            output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]);
-            output[0][2] = g1_vx_right * actuator_accelerations[1];
-            output[1][2] = g1_vy_right * actuator_accelerations[1];
-            output[0][7] = -(minus_g1_vx_left * actuator_velocities[0]);
-            output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]);
-            output[0][8] = g1_vx_right * actuator_velocities[1];
-            output[1][8] = g1_vy_right * actuator_velocities[1];
-            output[0][9] = -::overact::math::wide::signed(
+            output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]); // zz_1_leftR
+            output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]); // zz_1_leftR
+            output[0][2] = g1_vx_right * actuator_accelerations[1]; // zz_1_rightR
+            output[1][2] = g1_vy_right * actuator_accelerations[1]; // zz_1_rightR
+            output[0][7] = -(minus_g1_vx_left * actuator_velocities[0]); // fv_1_left
+            output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
+            output[0][8] = g1_vx_right * actuator_velocities[1]; // fv_1_right
+            output[1][8] = g1_vy_right * actuator_velocities[1]; // fv_1_right
+            output[0][9] = -::overact::math::wide::signed( // fs_1_left
                 minus_g1_vx_left,
                 actuator_velocities[0],
             );
-            output[1][9] = -::overact::math::wide::signed(
+            output[1][9] = -::overact::math::wide::signed( // fs_1_left
                 minus_g1_vy_left,
                 actuator_velocities[0],
             );
-            output[0][10] = ::overact::math::wide::signed(
+            output[0][10] = ::overact::math::wide::signed( // fs_1_right
                 g1_vx_right,
                 actuator_velocities[1],
             );
-            output[1][10] = ::overact::math::wide::signed(
+            output[1][10] = ::overact::math::wide::signed( // fs_1_right
                 g1_vy_right,
                 actuator_velocities[1],
             );
             let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = -(minus_g1_vx_left * bias_a1_y_left);
-            output[1][3] = -(minus_g1_vy_left * bias_a1_y_left);
+            output[0][3] = -(minus_g1_vx_left * bias_a1_y_left); // mx_1_leftR
+            output[1][3] = -(minus_g1_vy_left * bias_a1_y_left); // mx_1_leftR
             let bias_a1_y_right = 49.05 * l1_x_right;
-            output[0][4] = g1_vx_right * bias_a1_y_right;
-            output[1][4] = g1_vy_right * bias_a1_y_right;
+            output[0][4] = g1_vx_right * bias_a1_y_right; // mx_1_rightR
+            output[1][4] = g1_vy_right * bias_a1_y_right; // mx_1_rightR
             let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = minus_g1_vx_left * bias_a1_x_left;
-            output[1][5] = minus_g1_vy_left * bias_a1_x_left;
+            output[0][5] = minus_g1_vx_left * bias_a1_x_left; // my_1_left
+            output[1][5] = minus_g1_vy_left * bias_a1_x_left; // my_1_left
             let bias_a1_x_right = 49.05 * l1_y_right;
-            output[0][6] = -(g1_vx_right * bias_a1_x_right);
-            output[1][6] = -(g1_vy_right * bias_a1_x_right);
+            output[0][6] = -(g1_vx_right * bias_a1_x_right); // my_1_right
+            output[1][6] = -(g1_vy_right * bias_a1_x_right); // my_1_right
             let g2_vy_left = l1_y_left * k_left;
             let vy = (g1_vx_right * actuator_velocities[0]
                 + minus_g1_vx_left * actuator_velocities[1]) / t1;
@@ -3105,8 +3105,8 @@ impl FiveBar {
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let qd_2_left = rate_2_left - actuator_velocities[0];
             let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
-            output[0][17] = d_x_left * t2_left;
-            output[1][17] = pose[1] * t2_left;
+            output[0][17] = d_x_left * t2_left; // fs_2_left
+            output[1][17] = pose[1] * t2_left; // fs_2_left
             let rate_2_squared_left = rate_2_left * rate_2_left;
             let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
             let rate_1_squared_left = actuator_velocities[0]
@@ -3131,7 +3131,7 @@ impl FiveBar {
                 - bias_rate_dot_1_right;
             let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
                 + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right) / t1;
-            output[0][0] = -minus_dvx;
+            output[0][0] = -minus_dvx; // m_platformR
             let dvy = (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
                 + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right) / t1;
             // --- left
@@ -3143,12 +3143,12 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-            output[0][15] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+            output[0][15] = minus_g1_vx_left * inv_l_2_a_on_f2_left // my_2_left
                 - g2_vx_left * a2_x_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
-            output[0][13] = -(g2_vx_left * minus_rate_dot_2_left);
-            output[1][15] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+            output[0][13] = -(g2_vx_left * minus_rate_dot_2_left); // zz_2_leftR
+            output[1][15] = minus_g1_vy_left * inv_l_2_a_on_f2_left // my_2_left
                 - g2_vy_left * a2_x_left;
             // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
@@ -3160,20 +3160,20 @@ impl FiveBar {
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            output[0][16] = minus_g2_vx_right * a2_x_right
+            output[0][16] = minus_g2_vx_right * a2_x_right // my_2_right
                 - g1_vx_right * inv_l_2_a_on_f2_right;
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t2_right);
-            output[0][14] = -(minus_g2_vx_right * rate_dot_2_right);
-            output[1][16] = minus_g2_vy_right * a2_x_right
+            output[0][14] = -(minus_g2_vx_right * rate_dot_2_right); // zz_2_rightR
+            output[1][16] = minus_g2_vy_right * a2_x_right // my_2_right
                 - g1_vy_right * inv_l_2_a_on_f2_right;
-            output[1][13] = -(g2_vy_left * minus_rate_dot_2_left);
-            output[1][14] = -(minus_g2_vy_right * rate_dot_2_right);
+            output[1][13] = -(g2_vy_left * minus_rate_dot_2_left); // zz_2_leftR
+            output[1][14] = -(minus_g2_vy_right * rate_dot_2_right); // zz_2_rightR
             let qd_2_right = rate_2_right - actuator_velocities[1];
             let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
-            output[0][18] = -(d_x_right * t3_right);
-            output[1][0] = dvy + 9.81;
-            output[1][18] = -(pose[1] * t3_right);
+            output[0][18] = -(d_x_right * t3_right); // fs_2_right
+            output[1][0] = dvy + 9.81; // m_platformR
+            output[1][18] = -(pose[1] * t3_right); // fs_2_right
             ::core::result::Result::Ok(())
         })
     }
@@ -3203,10 +3203,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3230,20 +3230,20 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][2] = 0.0;
-            output[0][4] = 0.0;
-            output[0][6] = 0.0;
-            output[0][8] = 0.0;
-            output[0][10] = 0.0;
-            output[0][11] = 1.0;
-            output[0][12] = 0.0;
-            output[1][1] = 0.0;
-            output[1][3] = 0.0;
-            output[1][5] = 0.0;
-            output[1][7] = 0.0;
-            output[1][9] = 0.0;
-            output[1][11] = 0.0;
-            output[1][12] = 1.0;
+            output[0][2] = 0.0; // zz_1_rightR
+            output[0][4] = 0.0; // mx_1_rightR
+            output[0][6] = 0.0; // my_1_right
+            output[0][8] = 0.0; // fv_1_right
+            output[0][10] = 0.0; // fs_1_right
+            output[0][11] = 1.0; // off_1_left
+            output[0][12] = 0.0; // off_1_right
+            output[1][1] = 0.0; // zz_1_leftR
+            output[1][3] = 0.0; // mx_1_leftR
+            output[1][5] = 0.0; // my_1_left
+            output[1][7] = 0.0; // fv_1_left
+            output[1][9] = 0.0; // fs_1_left
+            output[1][11] = 0.0; // off_1_left
+            output[1][12] = 1.0; // off_1_right
             // --- left
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
@@ -3292,17 +3292,17 @@ impl FiveBar {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = a1_y_left;
+            output[0][3] = a1_y_left; // mx_1_leftR
             let a1_y_right = 49.05 * l1_x_right;
-            output[1][4] = a1_y_right;
+            output[1][4] = a1_y_right; // mx_1_rightR
             let a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = -a1_x_left;
+            output[0][5] = -a1_x_left; // my_1_left
             let a1_x_right = 49.05 * l1_y_right;
-            output[1][6] = -a1_x_right;
+            output[1][6] = -a1_x_right; // my_1_right
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
-            output[0][7] = -minus_rate_1_left;
-            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left);
+            output[0][7] = -minus_rate_1_left; // fv_1_left
+            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left); // fs_1_left
             let inv_det_ja = 1.0 / det_ja;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
@@ -3315,13 +3315,13 @@ impl FiveBar {
             let a_on_f1_right = l2_x_right * acceleration[0]
                 + l2_y_right * acceleration[1] + L_2_SQUARED * rate_2_squared_right;
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-            output[1][8] = rate_1_right;
+            output[1][8] = rate_1_right; // fv_1_right
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = rho_squared_right - 0.1025;
             let t3_right = 0.5 * t2_right;
             let rate_dot_1_right = k_right
                 * (a_on_f1_right + rate_1_squared_right * t3_right);
-            output[1][2] = rate_dot_1_right;
+            output[1][2] = rate_dot_1_right; // zz_1_rightR
             let minus_a_on_f2_right = l1_x_right * acceleration[0]
                 + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
@@ -3330,16 +3330,16 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            output[1][16] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right;
+            output[1][16] = INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right; // my_2_right
             let g2_a1_right = k_right * inv_det_ja;
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-            output[0][14] = -(g2_a1_right * minus_rate_dot_2_right);
+            output[0][14] = -(g2_a1_right * minus_rate_dot_2_right); // zz_2_rightR
             let t1_platform = acceleration[1] + 9.81;
-            output[1][0] = vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0];
+            output[1][0] = vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0]; // m_platformR
             let vy_by_a1 = g1_vx_right * inv_det_ja;
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-            output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
+            output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0]; // m_platformR
             // --- left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
@@ -3352,7 +3352,7 @@ impl FiveBar {
             let t3_left = 0.5 * t2_left;
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t3_left);
-            output[0][1] = -minus_rate_dot_1_left;
+            output[0][1] = -minus_rate_dot_1_left; // zz_1_leftR
             let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
@@ -3360,31 +3360,31 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            output[0][15] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left;
+            output[0][15] = INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let g2_a2_left = k_left * inv_det_ja;
-            output[1][13] = g2_a2_left * rate_dot_2_left;
-            output[0][13] = g2_a1_left * rate_dot_2_left;
+            output[1][13] = g2_a2_left * rate_dot_2_left; // zz_2_leftR
+            output[0][13] = g2_a1_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][17] = ::overact::math::wide::signed(
+            output[0][17] = ::overact::math::wide::signed( // fs_2_left
                 g2_a1_left - 1.0,
                 qd_2_left,
             );
-            output[1][14] = -(g2_a2_right * minus_rate_dot_2_right);
-            output[1][15] = -(g2_a2_left * a2_x_left);
-            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
-            output[0][16] = -(g2_a1_right * a2_x_right);
+            output[1][14] = -(g2_a2_right * minus_rate_dot_2_right); // zz_2_rightR
+            output[1][15] = -(g2_a2_left * a2_x_left); // my_2_left
+            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
+            output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][18] = -::overact::math::wide::signed(
+            output[0][18] = -::overact::math::wide::signed( // fs_2_right
                 g2_a1_right,
                 minus_qd_2_right,
             );
-            output[1][18] = -::overact::math::wide::signed(
+            output[1][18] = -::overact::math::wide::signed( // fs_2_right
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
             );
-            output[1][10] = ::overact::math::wide::sign(rate_1_right);
+            output[1][10] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
             ::core::result::Result::Ok(())
         })
     }
@@ -3417,10 +3417,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -3444,20 +3444,20 @@ impl FiveBar {
         const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
-        output[0][2] = 0.0;
-        output[0][4] = 0.0;
-        output[0][6] = 0.0;
-        output[0][8] = 0.0;
-        output[0][10] = 0.0;
-        output[0][11] = 1.0;
-        output[0][12] = 0.0;
-        output[1][1] = 0.0;
-        output[1][3] = 0.0;
-        output[1][5] = 0.0;
-        output[1][7] = 0.0;
-        output[1][9] = 0.0;
-        output[1][11] = 0.0;
-        output[1][12] = 1.0;
+        output[0][2] = 0.0; // zz_1_rightR
+        output[0][4] = 0.0; // mx_1_rightR
+        output[0][6] = 0.0; // my_1_right
+        output[0][8] = 0.0; // fv_1_right
+        output[0][10] = 0.0; // fs_1_right
+        output[0][11] = 1.0; // off_1_left
+        output[0][12] = 0.0; // off_1_right
+        output[1][1] = 0.0; // zz_1_leftR
+        output[1][3] = 0.0; // mx_1_leftR
+        output[1][5] = 0.0; // my_1_left
+        output[1][7] = 0.0; // fv_1_left
+        output[1][9] = 0.0; // fs_1_left
+        output[1][11] = 0.0; // off_1_left
+        output[1][12] = 1.0; // off_1_right
         // --- sines and cosines
         let [(s2_left, c2_left), (s2_right, c2_right), (s1_right, c1_right),
         (s1_left, c1_left)] = ::overact::math::sin_cos_all([
@@ -3485,16 +3485,16 @@ impl FiveBar {
         let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
         let t1_platform = acceleration[1] + 9.81;
         let minus_vx_by_a1 = s1_fk1_x_plus_c1_right * l_1_per_det_ja;
-        output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0];
+        output[0][0] = vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0]; // m_platformR
         let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
         let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
-        output[1][0] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform;
+        output[1][0] = vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform; // m_platformR
         let a1_y_left = 9.81 * c1_left;
-        output[0][3] = a1_y_left;
+        output[0][3] = a1_y_left; // mx_1_leftR
         let a1_y_right = 9.81 * c1_right;
-        output[1][4] = a1_y_right;
+        output[1][4] = a1_y_right; // mx_1_rightR
         let a1_x_left = 9.81 * s1_left;
-        output[0][5] = -a1_x_left;
+        output[0][5] = -a1_x_left; // my_1_left
         let c1_dvx_plus_s1_dvy_left = c1_left * acceleration[0]
             + s1_left * acceleration[1];
         let a_on_f1_left = fk1_x_left * c1_dvx_plus_s1_dvy_left
@@ -3503,7 +3503,7 @@ impl FiveBar {
         let t1_left = fk1_x_left * c1_vx_plus_s1_vy_left;
         let t2_left = t1_left + c1_left * twist[1] - s1_left * twist[0];
         let rate_1_left = INV_L_1 * t2_left;
-        output[0][7] = rate_1_left;
+        output[0][7] = rate_1_left; // fv_1_left
         let t3_left = t2_left * rate_1_left;
         let k2_left = INV_L_2 * inv_s2_left;
         let minus_rate_2_left = k2_left * c1_vx_plus_s1_vy_left;
@@ -3516,22 +3516,22 @@ impl FiveBar {
         let a_on_f2_left = c1_dvx_plus_s1_dvy_left + t3_left;
         let a2_x_left = c2_left * (a1_x_left - t3_left)
             + s2_left * (a1_y_left + t4_left);
-        output[0][15] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left;
+        output[0][15] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
         let rate_dot_1_left = INV_L_1 * t4_left;
-        output[0][1] = rate_dot_1_left;
-        output[0][9] = ::overact::math::sign(t2_left);
+        output[0][1] = rate_dot_1_left; // zz_1_leftR
+        output[0][9] = ::overact::math::sign(t2_left); // fs_1_left
         let minus_rate_dot_2_left = k2_left
             * (a_on_f2_left + t1_left * minus_rate_2_left);
-        output[0][13] = -(g2_a1_left * minus_rate_dot_2_left);
+        output[0][13] = -(g2_a1_left * minus_rate_dot_2_left); // zz_2_leftR
         let minus_g2_a2_left = l_1_per_det_ja * k2_left;
-        output[1][13] = minus_g2_a2_left * minus_rate_dot_2_left;
-        output[1][15] = minus_g2_a2_left * a2_x_left;
+        output[1][13] = minus_g2_a2_left * minus_rate_dot_2_left; // zz_2_leftR
+        output[1][15] = minus_g2_a2_left * a2_x_left; // my_2_left
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left);
-        output[1][17] = ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left);
+        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left); // fs_2_left
+        output[1][17] = ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left); // fs_2_left
         // --- right
         let a1_x_right = 9.81 * s1_right;
-        output[1][6] = -a1_x_right;
+        output[1][6] = -a1_x_right; // my_1_right
         let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
             + s1_right * acceleration[1];
         let a_on_f1_right = fk1_x_right * c1_dvx_plus_s1_dvy_right
@@ -3540,7 +3540,7 @@ impl FiveBar {
         let t1_right = fk1_x_right * c1_vx_plus_s1_vy_right;
         let t2_right = t1_right + c1_right * twist[1] - s1_right * twist[0];
         let rate_1_right = INV_L_1 * t2_right;
-        output[1][8] = rate_1_right;
+        output[1][8] = rate_1_right; // fv_1_right
         let t3_right = t2_right * rate_1_right;
         let k2_right = INV_L_2 * inv_s2_right;
         let minus_rate_2_right = k2_right * c1_vx_plus_s1_vy_right;
@@ -3554,19 +3554,19 @@ impl FiveBar {
             - minus_g2_vx_right * vx_by_a2;
         let a2_x_right = c2_right * (a1_x_right - t3_right)
             + s2_right * (a1_y_right + t4_right);
-        output[1][16] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right;
+        output[1][16] = L_1_PER_L_2 * a_on_f2_right - g2_a2_right * a2_x_right; // my_2_right
         let g2_a1_right = l_1_per_det_ja * k2_right;
         let minus_rate_dot_2_right = k2_right
             * (a_on_f2_right + t1_right * minus_rate_2_right);
-        output[0][14] = -(g2_a1_right * minus_rate_dot_2_right);
+        output[0][14] = -(g2_a1_right * minus_rate_dot_2_right); // zz_2_rightR
         let rate_dot_1_right = INV_L_1 * t4_right;
-        output[1][2] = rate_dot_1_right;
-        output[1][10] = ::overact::math::sign(t2_right);
-        output[1][14] = -(g2_a2_right * minus_rate_dot_2_right);
-        output[0][16] = -(g2_a1_right * a2_x_right);
+        output[1][2] = rate_dot_1_right; // zz_1_rightR
+        output[1][10] = ::overact::math::sign(t2_right); // fs_1_right
+        output[1][14] = -(g2_a2_right * minus_rate_dot_2_right); // zz_2_rightR
+        output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        output[0][18] = -::overact::math::signed(g2_a1_right, minus_qd_2_right);
-        output[1][18] = -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right);
+        output[0][18] = -::overact::math::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
+        output[1][18] = -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
         ::core::result::Result::Ok(())
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -3598,10 +3598,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3634,24 +3634,24 @@ impl FiveBar {
             const L_1_SQUARED: ::core::primitive::f64 = 0.04;
             /// l_2²
             const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
-            output[0][1] = actuator_accelerations[0];
-            output[0][2] = 0.0;
-            output[0][4] = 0.0;
-            output[0][6] = 0.0;
-            output[0][7] = actuator_velocities[0];
-            output[0][8] = 0.0;
-            output[0][10] = 0.0;
-            output[0][11] = 1.0;
-            output[0][12] = 0.0;
-            output[1][1] = 0.0;
-            output[1][2] = actuator_accelerations[1];
-            output[1][3] = 0.0;
-            output[1][5] = 0.0;
-            output[1][7] = 0.0;
-            output[1][8] = actuator_velocities[1];
-            output[1][9] = 0.0;
-            output[1][11] = 0.0;
-            output[1][12] = 1.0;
+            output[0][1] = actuator_accelerations[0]; // zz_1_leftR
+            output[0][2] = 0.0; // zz_1_rightR
+            output[0][4] = 0.0; // mx_1_rightR
+            output[0][6] = 0.0; // my_1_right
+            output[0][7] = actuator_velocities[0]; // fv_1_left
+            output[0][8] = 0.0; // fv_1_right
+            output[0][10] = 0.0; // fs_1_right
+            output[0][11] = 1.0; // off_1_left
+            output[0][12] = 0.0; // off_1_right
+            output[1][1] = 0.0; // zz_1_leftR
+            output[1][2] = actuator_accelerations[1]; // zz_1_rightR
+            output[1][3] = 0.0; // mx_1_leftR
+            output[1][5] = 0.0; // my_1_left
+            output[1][7] = 0.0; // fv_1_left
+            output[1][8] = actuator_velocities[1]; // fv_1_right
+            output[1][9] = 0.0; // fs_1_left
+            output[1][11] = 0.0; // off_1_left
+            output[1][12] = 1.0; // off_1_right
             // --- left
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
@@ -3704,14 +3704,14 @@ impl FiveBar {
                 22.615508735629323,
                 ::overact::ActuatorGroup::All,
             )?;
-            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]);
-            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]);
+            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
+            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
-            output[0][3] = bias_a1_y_left;
+            output[0][3] = bias_a1_y_left; // mx_1_leftR
             let bias_a1_y_right = 49.05 * l1_x_right;
-            output[1][4] = bias_a1_y_right;
+            output[1][4] = bias_a1_y_right; // mx_1_rightR
             let bias_a1_x_left = 49.05 * l1_y_left;
-            output[0][5] = -bias_a1_x_left;
+            output[0][5] = -bias_a1_x_left; // my_1_left
             let inv_det_ja = 1.0 / det_ja;
             let rate_1_squared_left = actuator_velocities[0]
                 * actuator_velocities[0];
@@ -3721,9 +3721,9 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-            output[1][15] = -(g2_a2_left * a2_x_left);
+            output[1][15] = -(g2_a2_left * a2_x_left); // my_2_left
             let bias_a1_x_right = 49.05 * l1_y_right;
-            output[1][6] = -bias_a1_x_right;
+            output[1][6] = -bias_a1_x_right; // my_1_right
             let rate_1_squared_right = actuator_velocities[1]
                 * actuator_velocities[1];
             let t2_right = rho_squared_right - 0.1025;
@@ -3733,7 +3733,7 @@ impl FiveBar {
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-            output[0][16] = -(g2_a1_right * a2_x_right);
+            output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
             let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
             let g2_vy_left = l1_y_left * k_left;
             let vy = inv_det_ja
@@ -3775,7 +3775,7 @@ impl FiveBar {
                 - minus_bias_a_on_f2_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
-            output[0][13] = -(g2_a1_left * minus_rate_dot_2_left);
+            output[0][13] = -(g2_a1_left * minus_rate_dot_2_left); // zz_2_leftR
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
@@ -3785,23 +3785,23 @@ impl FiveBar {
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
             let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
                 - minus_g2_vy_right * vy_by_a2;
-            output[1][14] = g2_a2_right * rate_dot_2_right;
+            output[1][14] = g2_a2_right * rate_dot_2_right; // zz_2_rightR
             let t1_platform = dvy + 9.81;
-            output[0][0] = minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform;
-            output[1][0] = minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform;
-            output[0][15] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left);
-            output[1][16] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right);
-            output[1][13] = -(g2_a2_left * minus_rate_dot_2_left);
-            output[0][14] = g2_a1_right * rate_dot_2_right;
+            output[0][0] = minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform; // m_platformR
+            output[1][0] = minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform; // m_platformR
+            output[0][15] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left); // my_2_left
+            output[1][16] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right); // my_2_right
+            output[1][13] = -(g2_a2_left * minus_rate_dot_2_left); // zz_2_leftR
+            output[0][14] = g2_a1_right * rate_dot_2_right; // zz_2_rightR
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][17] = ::overact::math::wide::signed(
+            output[0][17] = ::overact::math::wide::signed( // fs_2_left
                 g2_a1_left - 1.0,
                 qd_2_left,
             );
-            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left);
+            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            output[0][18] = ::overact::math::wide::signed(g2_a1_right, qd_2_right);
-            output[1][18] = ::overact::math::wide::signed(
+            output[0][18] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
+            output[1][18] = ::overact::math::wide::signed( // fs_2_right
                 g2_a2_right - 1.0,
                 qd_2_right,
             );

@@ -495,10 +495,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -520,71 +520,71 @@ impl Rx90 {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             output[0][0..2].fill(joint_accelerations[0]);
-            output[0][2] = joint_velocities[0];
-            output[0][4] = 1.0;
+            output[0][2] = joint_velocities[0]; // fv_1
+            output[0][4] = 1.0; // off_1
             output[0][10..17].fill(0.0);
-            output[0][22] = 0.0;
+            output[0][22] = 0.0; // zz_3
             output[0][27..31].fill(0.0);
             output[0][41..45].fill(0.0);
             output[0][55..59].fill(0.0);
             output[0][69..73].fill(0.0);
             output[1][0..5].fill(0.0);
-            output[1][10] = joint_accelerations[1];
-            output[1][13] = joint_accelerations[1];
-            output[1][14] = joint_velocities[1];
-            output[1][16] = 1.0;
+            output[1][10] = joint_accelerations[1]; // zz_2
+            output[1][13] = joint_accelerations[1]; // ia_2
+            output[1][14] = joint_velocities[1]; // fv_2
+            output[1][16] = 1.0; // off_2
             output[1][27..31].fill(0.0);
             output[1][41..45].fill(0.0);
             output[1][55..59].fill(0.0);
             output[1][69..73].fill(0.0);
             output[2][0..17].fill(0.0);
             output[2][25..27].fill(0.0);
-            output[2][27] = joint_accelerations[2];
-            output[2][28] = joint_velocities[2];
-            output[2][30] = 1.0;
+            output[2][27] = joint_accelerations[2]; // ia_3
+            output[2][28] = joint_velocities[2]; // fv_3
+            output[2][30] = 1.0; // off_3
             output[2][41..45].fill(0.0);
             output[2][55..59].fill(0.0);
             output[2][69..73].fill(0.0);
             output[3][0..31].fill(0.0);
             output[3][39..41].fill(0.0);
-            output[3][41] = joint_accelerations[3];
-            output[3][42] = joint_velocities[3];
-            output[3][44] = 1.0;
+            output[3][41] = joint_accelerations[3]; // ia_4
+            output[3][42] = joint_velocities[3]; // fv_4
+            output[3][44] = 1.0; // off_4
             output[3][54..59].fill(0.0);
             output[3][68..73].fill(0.0);
             output[4][0..45].fill(0.0);
             output[4][53..55].fill(0.0);
-            output[4][55] = joint_accelerations[4];
-            output[4][56] = joint_velocities[4];
-            output[4][58] = 1.0;
+            output[4][55] = joint_accelerations[4]; // ia_5
+            output[4][56] = joint_velocities[4]; // fv_5
+            output[4][58] = 1.0; // off_5
             output[4][68..73].fill(0.0);
             output[5][0..59].fill(0.0);
             output[5][67..69].fill(0.0);
-            output[5][69] = joint_accelerations[5];
-            output[5][70] = joint_velocities[5];
-            output[5][72] = 1.0;
+            output[5][69] = joint_accelerations[5]; // ia_6
+            output[5][70] = joint_velocities[5]; // fv_6
+            output[5][72] = 1.0; // off_6
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
             (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            output[0][3] = ::overact::math::wide::sign(joint_velocities[0]);
-            output[1][15] = ::overact::math::wide::sign(joint_velocities[1]);
-            output[2][29] = ::overact::math::wide::sign(joint_velocities[2]);
-            output[3][43] = ::overact::math::wide::sign(joint_velocities[3]);
-            output[4][57] = ::overact::math::wide::sign(joint_velocities[4]);
-            output[5][71] = ::overact::math::wide::sign(joint_velocities[5]);
+            output[0][3] = ::overact::math::wide::sign(joint_velocities[0]); // fs_1
+            output[1][15] = ::overact::math::wide::sign(joint_velocities[1]); // fs_2
+            output[2][29] = ::overact::math::wide::sign(joint_velocities[2]); // fs_3
+            output[3][43] = ::overact::math::wide::sign(joint_velocities[3]); // fs_4
+            output[4][57] = ::overact::math::wide::sign(joint_velocities[4]); // fs_5
+            output[5][71] = ::overact::math::wide::sign(joint_velocities[5]); // fs_6
             // --- arm
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-            output[1][22] = wd3_z_arm;
-            output[2][22] = wd3_z_arm;
+            output[1][22] = wd3_z_arm; // zz_3
+            output[2][22] = wd3_z_arm; // zz_3
             let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-            output[1][7] = minus_u2_yz_arm;
-            output[1][25] = -(D3 * minus_u2_yz_arm);
+            output[1][7] = minus_u2_yz_arm; // xz_2
+            output[1][25] = -(D3 * minus_u2_yz_arm); // mz_3
             let a2_x_arm = 9.81 * s2_arm;
-            output[1][12] = -a2_x_arm;
+            output[1][12] = -a2_x_arm; // my_2
             let u2_xz_arm = c2_arm * joint_accelerations[0];
-            output[1][9] = u2_xz_arm;
+            output[1][9] = u2_xz_arm; // yz_2
             let w2_x_arm = s2_arm * joint_velocities[0];
             let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
             let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
@@ -593,78 +593,78 @@ impl Rx90 {
             let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
             let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
             let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-            output[0][6] = c2_arm * u2_zy_arm - s2_arm * u2_zx_arm;
+            output[0][6] = c2_arm * u2_zy_arm - s2_arm * u2_zx_arm; // xy_2
             let minus_yy_2_on_q1 = c2_arm * u2_zx_arm;
-            output[0][8] = -minus_yy_2_on_q1;
-            output[0][5] = joint_accelerations[0] + minus_yy_2_on_q1;
+            output[0][8] = -minus_yy_2_on_q1; // yy_2
+            output[0][5] = joint_accelerations[0] + minus_yy_2_on_q1; // xx_2
             let minus_xx_2_on_q2 = w2_x_arm * w2_y_arm;
-            output[1][5] = -minus_xx_2_on_q2;
-            output[1][8] = minus_xx_2_on_q2;
+            output[1][5] = -minus_xx_2_on_q2; // xx_2
+            output[1][8] = minus_xx_2_on_q2; // yy_2
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-            output[1][6] = w2_x_squared_arm - w2_y_squared_arm;
+            output[1][6] = w2_x_squared_arm - w2_y_squared_arm; // xy_2
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
             let u2_xy_arm = minus_xx_2_on_q2 - joint_accelerations[1];
-            output[0][9] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+            output[0][9] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm) // yz_2
                 - c2_arm * u2_xy_arm;
             let u2_yx_arm = minus_xx_2_on_q2 + joint_accelerations[1];
             let xz_2_on_q1 = s2_arm * u2_yx_arm
                 + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
             output[0][7] = xz_2_on_q1;
-            output[0][25] = -(D3 * xz_2_on_q1);
+            output[0][25] = -(D3 * xz_2_on_q1); // mz_3
             let a2_y_arm = 9.81 * c2_arm;
-            output[1][11] = a2_y_arm;
+            output[1][11] = a2_y_arm; // mx_2
             let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-            output[1][26] = D3 * a2_y_plus_d3_u2_yx_arm;
+            output[1][26] = D3 * a2_y_plus_d3_u2_yx_arm; // m_3
             let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
             let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
             let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
                 - s3_arm * a2_x_plus_d3_u2_xx_arm;
-            output[2][23] = a3_y_arm;
+            output[2][23] = a3_y_arm; // mx_3
             let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
                 + s3_arm * a2_y_plus_d3_u2_yx_arm;
-            output[2][24] = -a3_x_arm;
+            output[2][24] = -a3_x_arm; // my_3
             let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
             let minus_u3_yz_arm = joint_accelerations[0] * s23_arm;
-            output[1][19] = minus_u3_yz_arm;
-            output[2][19] = minus_u3_yz_arm;
+            output[1][19] = minus_u3_yz_arm; // xz_3
+            output[2][19] = minus_u3_yz_arm; // xz_3
             let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
             let u3_xz_arm = joint_accelerations[0] * c23_arm;
-            output[1][21] = u3_xz_arm;
-            output[2][21] = u3_xz_arm;
+            output[1][21] = u3_xz_arm; // yz_3
+            output[2][21] = u3_xz_arm; // yz_3
             let minus_v3_by_1_z_arm = D3 * c2_arm;
             let a3_z_arm = D3 * u2_zx_arm;
-            output[0][26] = -(minus_v3_by_1_z_arm * a3_z_arm);
+            output[0][26] = -(minus_v3_by_1_z_arm * a3_z_arm); // m_3
             let w3_x_arm = joint_velocities[0] * s23_arm;
             let w3_y_arm = joint_velocities[0] * c23_arm;
             let minus_xx_3_on_q2 = w3_x_arm * w3_y_arm;
-            output[1][17] = -minus_xx_3_on_q2;
-            output[1][20] = minus_xx_3_on_q2;
-            output[2][17] = -minus_xx_3_on_q2;
-            output[2][20] = minus_xx_3_on_q2;
+            output[1][17] = -minus_xx_3_on_q2; // xx_3
+            output[1][20] = minus_xx_3_on_q2; // yy_3
+            output[2][17] = -minus_xx_3_on_q2; // xx_3
+            output[2][20] = minus_xx_3_on_q2; // yy_3
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
             let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
             let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-            output[0][23] = -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm);
+            output[0][23] = -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm); // mx_3
             let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
             let wd3_x_arm = w3_y_w3_z_arm + minus_u3_yz_arm;
             let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-            output[0][24] = s23_arm * a3_z_arm - minus_v3_by_1_z_arm * u3_zy_arm;
-            output[0][18] = c23_arm * u3_zy_arm - s23_arm * u3_zx_arm;
+            output[0][24] = s23_arm * a3_z_arm - minus_v3_by_1_z_arm * u3_zy_arm; // my_3
+            output[0][18] = c23_arm * u3_zy_arm - s23_arm * u3_zx_arm; // xy_3
             let t1_arm = D3 * (s23_arm - c2_arm);
             let t2_arm = D3 * (u2_zx_arm + u3_zy_arm);
-            output[0][39] = u3_zy_arm * t1_arm + s23_arm * t2_arm;
+            output[0][39] = u3_zy_arm * t1_arm + s23_arm * t2_arm; // mz_4
             let minus_yy_3_on_q1 = c23_arm * u3_zx_arm;
-            output[0][20] = -minus_yy_3_on_q1;
+            output[0][20] = -minus_yy_3_on_q1; // yy_3
             let xx_3_on_q1 = joint_accelerations[0] + minus_yy_3_on_q1;
             output[0][17] = xx_3_on_q1;
             let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-            output[3][36] = wd4_z_arm;
+            output[3][36] = wd4_z_arm; // zz_4
             let m_4_on_q1 = t1_arm * t2_arm;
             output[0][40] = m_4_on_q1;
-            output[0][54] = m_4_on_q1;
-            output[0][68] = m_4_on_q1;
+            output[0][54] = m_4_on_q1; // m_5
+            output[0][68] = m_4_on_q1; // m_6
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let zz_4_on_q2 = w3_x_arm * w4_z_arm;
             output[1][36] = zz_4_on_q2;
@@ -676,80 +676,80 @@ impl Rx90 {
             output[2][18] = xy_3_on_q2;
             let u3_yx_arm = minus_xx_3_on_q2 + wd3_z_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-            output[0][19] = s23_arm * u3_yx_arm
+            output[0][19] = s23_arm * u3_yx_arm // xz_3
                 + c23_arm * (w3_z_squared_arm - w3_x_squared_arm);
             let v3_by_2_y_arm = D3 * c3_arm;
             let v3_by_2_x_arm = D3 * s3_arm;
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-            output[1][23] = v3_by_2_y_arm * u3_yx_arm
+            output[1][23] = v3_by_2_y_arm * u3_yx_arm // mx_3
                 - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm;
             let u3_xy_arm = minus_xx_3_on_q2 - wd3_z_arm;
-            output[0][21] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+            output[0][21] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm) // yz_3
                 - c23_arm * u3_xy_arm;
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let d3_u3_xy_arm = D3 * u3_xy_arm;
             let t3_arm = s3_arm * d3_u3_xy_arm - v3_by_2_y_arm * minus_u3_yy_arm;
-            output[1][24] = t3_arm - a3_x_arm;
+            output[1][24] = t3_arm - a3_x_arm; // my_3
             let a3_x_plus_d3_u3_xy_arm = a3_x_arm + d3_u3_xy_arm;
             let minus_mz_4_on_q3 = d3_u3_xy_arm + a3_x_plus_d3_u3_xy_arm;
-            output[2][39] = -minus_mz_4_on_q3;
-            output[1][39] = t3_arm - minus_mz_4_on_q3;
+            output[2][39] = -minus_mz_4_on_q3; // mz_4
+            output[1][39] = t3_arm - minus_mz_4_on_q3; // mz_4
             let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
-            output[2][40] = -minus_m_4_on_q3;
-            output[2][54] = -minus_m_4_on_q3;
-            output[2][68] = -minus_m_4_on_q3;
+            output[2][40] = -minus_m_4_on_q3; // m_4
+            output[2][54] = -minus_m_4_on_q3; // m_5
+            output[2][68] = -minus_m_4_on_q3; // m_6
             let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
             let t4_arm = 1.0 - s3_arm;
             let m_4_on_q2 = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t4_arm;
             output[1][40] = m_4_on_q2;
-            output[1][54] = m_4_on_q2;
-            output[1][68] = m_4_on_q2;
+            output[1][54] = m_4_on_q2; // m_5
+            output[1][68] = m_4_on_q2; // m_6
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
             output[3][31] = xx_4_on_q4;
-            output[3][34] = -xx_4_on_q4;
+            output[3][34] = -xx_4_on_q4; // yy_4
             let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t2_arm;
-            output[3][37] = -a5_z_arm;
+            output[3][37] = -a5_z_arm; // mx_4
             let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t2_arm;
-            output[3][38] = -a4_x_arm;
-            output[3][53] = a4_x_arm;
-            output[3][51] = -(c5_arm * a5_z_arm);
+            output[3][38] = -a4_x_arm; // my_4
+            output[3][53] = a4_x_arm; // mz_5
+            output[3][51] = -(c5_arm * a5_z_arm); // mx_5
             let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-            output[4][51] = a5_y_arm;
+            output[4][51] = a5_y_arm; // mx_5
             let my_5_on_q4 = s5_arm * a5_z_arm;
             output[3][52] = my_5_on_q4;
-            output[3][67] = my_5_on_q4;
+            output[3][67] = my_5_on_q4; // mz_6
             let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-            output[4][52] = -a5_x_arm;
-            output[4][67] = -a5_x_arm;
-            output[4][65] = c6_arm * a5_y_arm;
-            output[4][66] = -(s6_arm * a5_y_arm);
+            output[4][52] = -a5_x_arm; // my_5
+            output[4][67] = -a5_x_arm; // mz_6
+            output[4][65] = c6_arm * a5_y_arm; // mx_6
+            output[4][66] = -(s6_arm * a5_y_arm); // my_6
             let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-            output[5][65] = -minus_a6_y_arm;
+            output[5][65] = -minus_a6_y_arm; // mx_6
             let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-            output[3][65] = a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm;
+            output[3][65] = a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm; // mx_6
             let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-            output[5][66] = -a6_x_arm;
+            output[5][66] = -a6_x_arm; // my_6
             let w6_by_4_x_arm = s5_arm * c6_arm;
-            output[3][66] = a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm;
+            output[3][66] = a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm; // my_6
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
-            output[3][50] = -minus_zz_5_on_q4;
+            output[3][50] = -minus_zz_5_on_q4; // zz_5
             let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
                 + joint_velocities[3] * w4_x_arm;
             let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-            output[4][50] = wd5_z_arm;
+            output[4][50] = wd5_z_arm; // zz_5
             let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
                 - joint_velocities[3] * minus_w4_y_arm;
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
             let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-            output[3][33] = minus_u4_yz_arm;
+            output[3][33] = minus_u4_yz_arm; // xz_4
             let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
             let s4_u4_zy_arm = s4_arm * u4_zy_arm;
             let minus_xx_4_on_q2 = zz_4_on_q2 + s4_u4_zy_arm;
-            output[1][31] = -minus_xx_4_on_q2;
-            output[2][31] = -minus_xx_4_on_q2;
+            output[1][31] = -minus_xx_4_on_q2; // xx_4
+            output[2][31] = -minus_xx_4_on_q2; // xx_4
             let yy_4_on_q2 = minus_xx_4_on_q2 - u3_xy_arm;
             output[1][34] = yy_4_on_q2;
             output[2][34] = yy_4_on_q2;
@@ -759,21 +759,21 @@ impl Rx90 {
             let u3_yy_minus_u4_xx_arm = minus_u4_xx_arm - minus_u3_yy_arm;
             let t5_arm = w4_y_squared_arm - w4_z_squared_arm;
             let minus_xy_4_on_q4 = u3_yy_minus_u4_xx_arm + t5_arm;
-            output[3][32] = -minus_xy_4_on_q4;
-            output[0][32] = -(c23_arm * minus_xy_4_on_q4
+            output[3][32] = -minus_xy_4_on_q4; // xy_4
+            output[0][32] = -(c23_arm * minus_xy_4_on_q4 // xy_4
                 + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2));
             let w4_by_1_x_arm = s23_arm * c4_arm;
             let w5_by_1_z_arm = s23_arm * s4_arm;
             let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-            output[0][33] = w4_by_1_x_arm * u4_yx_arm
+            output[0][33] = w4_by_1_x_arm * u4_yx_arm // xz_4
                 - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm + c23_arm * minus_u4_yz_arm;
             let s4_u4_yx_arm = s4_arm * u4_yx_arm;
             let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * u3_yy_minus_u4_xx_arm;
-            output[1][33] = -minus_xz_4_on_q2;
-            output[2][33] = -minus_xz_4_on_q2;
+            output[1][33] = -minus_xz_4_on_q2; // xz_4
+            output[2][33] = -minus_xz_4_on_q2; // xz_4
             let minus_v4_by_1_x_arm = s4_arm * t1_arm;
             let v5_by_1_z_arm = c4_arm * t1_arm;
-            output[0][37] = minus_v4_by_1_x_arm * minus_u4_xx_arm
+            output[0][37] = minus_v4_by_1_x_arm * minus_u4_xx_arm // mx_4
                 - v5_by_1_z_arm * u4_yx_arm + w5_by_1_z_arm * a4_z_arm
                 - c23_arm * a5_z_arm;
             let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
@@ -782,19 +782,19 @@ impl Rx90 {
                 + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
                 - c23_arm * a4_x_arm;
             output[0][38] = my_4_on_q1;
-            output[0][53] = -my_4_on_q1;
+            output[0][53] = -my_4_on_q1; // mz_5
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
             let xx_4_on_q1 = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
                 + c23_arm * xx_4_on_q4;
             output[0][31] = xx_4_on_q1;
-            output[0][34] = xx_3_on_q1 - xx_4_on_q1;
+            output[0][34] = xx_3_on_q1 - xx_4_on_q1; // yy_4
             let zz_4_on_q1 = w5_by_1_z_w4_x_w4_z_arm
                 - w4_by_1_x_arm * minus_w4_y_w4_z_arm + c23_arm * wd4_z_arm;
             output[0][36] = zz_4_on_q1;
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-            output[3][35] = u4_xz_arm;
-            output[0][35] = w4_by_1_x_arm * t5_arm - w5_by_1_z_arm * minus_u4_xy_arm
+            output[3][35] = u4_xz_arm; // yz_4
+            output[0][35] = w4_by_1_x_arm * t5_arm - w5_by_1_z_arm * minus_u4_xy_arm // yz_4
                 + c23_arm * u4_xz_arm;
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
             let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
@@ -803,28 +803,28 @@ impl Rx90 {
             let minus_v4_by_3_x_arm = D3 * c4_arm;
             let t6_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
             let c4_a4_z_arm = c4_arm * a4_z_arm;
-            output[1][37] = v3_by_2_y_arm * u4_zx_arm + t6_arm * t4_arm
+            output[1][37] = v3_by_2_y_arm * u4_zx_arm + t6_arm * t4_arm // mx_4
                 + c4_a4_z_arm;
-            output[2][37] = t6_arm + c4_a4_z_arm;
+            output[2][37] = t6_arm + c4_a4_z_arm; // mx_4
             let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
             let minus_yz_4_on_q2 = s4_arm * t5_arm + minus_c4_u4_xy_arm;
-            output[1][35] = -minus_yz_4_on_q2;
-            output[2][35] = -minus_yz_4_on_q2;
+            output[1][35] = -minus_yz_4_on_q2; // yz_4
+            output[2][35] = -minus_yz_4_on_q2; // yz_4
             let v4_by_3_y_arm = D3 * s4_arm;
             let t7_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
             let s4_a4_z_arm = s4_arm * a4_z_arm;
             let my_4_on_q2 = t7_arm * t4_arm + v3_by_2_y_arm * u4_zy_arm
                 - s4_a4_z_arm;
             output[1][38] = my_4_on_q2;
-            output[1][53] = -my_4_on_q2;
+            output[1][53] = -my_4_on_q2; // mz_5
             let my_4_on_q3 = t7_arm - s4_a4_z_arm;
             output[2][38] = my_4_on_q3;
-            output[2][53] = -my_4_on_q3;
+            output[2][53] = -my_4_on_q3; // mz_5
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
-            output[4][45] = -minus_xx_5_on_q5;
-            output[4][48] = minus_xx_5_on_q5;
+            output[4][45] = -minus_xx_5_on_q5; // xx_5
+            output[4][48] = minus_xx_5_on_q5; // yy_5
             let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
             let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
                 + joint_velocities[4] * w5_y_arm;
@@ -834,22 +834,22 @@ impl Rx90 {
             let xx_5_on_q1 = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
                 - w5_by_1_z_arm * minus_xx_5_on_q5;
             output[0][45] = xx_5_on_q1;
-            output[0][48] = zz_4_on_q1 + xx_4_on_q1 - xx_5_on_q1;
+            output[0][48] = zz_4_on_q1 + xx_4_on_q1 - xx_5_on_q1; // yy_5
             let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
                 - joint_velocities[4] * w5_x_arm;
             let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-            output[4][49] = u5_xz_arm;
+            output[4][49] = u5_xz_arm; // yz_5
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
             let zz_5_on_q1 = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
                 + w5_by_1_z_arm * wd5_z_arm;
             output[0][50] = zz_5_on_q1;
             let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-            output[4][47] = -u5_yz_arm;
+            output[4][47] = -u5_yz_arm; // xz_5
             let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-            output[5][64] = wd6_z_arm;
+            output[5][64] = wd6_z_arm; // zz_6
             let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
             let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-            output[3][46] = c5_arm * u5_zy_arm - s5_arm * u5_zx_arm;
+            output[3][46] = c5_arm * u5_zy_arm - s5_arm * u5_zx_arm; // xy_5
             let s5_u5_zy_arm = s5_arm * u5_zy_arm;
             let xx_5_on_q4 = minus_zz_5_on_q4 + s5_u5_zy_arm;
             output[3][45] = xx_5_on_q4;
@@ -866,19 +866,19 @@ impl Rx90 {
                 + c4_arm * xy_5_on_q5;
             output[1][46] = xy_5_on_q2;
             output[2][46] = xy_5_on_q2;
-            output[0][46] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+            output[0][46] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm // xy_5
                 + w5_by_1_z_arm * xy_5_on_q5;
             let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
             let t9_arm = xy_5_on_q5 + t8_arm;
-            output[0][47] = w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm
+            output[0][47] = w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm // xz_5
                 - w5_by_1_z_arm * u5_yz_arm;
-            output[3][47] = s5_arm * u5_yx_arm - c5_arm * t9_arm;
+            output[3][47] = s5_arm * u5_yx_arm - c5_arm * t9_arm; // xz_5
             let w5_by_2_y_arm = s4_arm * s5_arm;
             let minus_w5_by_2_x_arm = s4_arm * c5_arm;
             let minus_xz_5_on_q2 = w5_by_2_y_arm * t9_arm
                 + minus_w5_by_2_x_arm * u5_yx_arm + c4_arm * u5_yz_arm;
-            output[1][47] = -minus_xz_5_on_q2;
-            output[2][47] = -minus_xz_5_on_q2;
+            output[1][47] = -minus_xz_5_on_q2; // xz_5
+            output[2][47] = -minus_xz_5_on_q2; // xz_5
             let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
             let zz_5_on_q2 = c4_arm * wd5_z_arm
                 - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
@@ -889,26 +889,26 @@ impl Rx90 {
             output[1][45] = xx_5_on_q2;
             output[2][45] = xx_5_on_q2;
             let minus_yy_5_on_q2 = s4_u4_zy_arm + xx_5_on_q2;
-            output[1][48] = -minus_yy_5_on_q2;
-            output[2][48] = -minus_yy_5_on_q2;
+            output[1][48] = -minus_yy_5_on_q2; // yy_5
+            output[2][48] = -minus_yy_5_on_q2; // yy_5
             let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-            output[0][49] = w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+            output[0][49] = w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm // yz_5
                 + w5_by_1_z_arm * u5_xz_arm;
             let yz_5_on_q2 = c4_arm * u5_xz_arm
                 - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
             output[1][49] = yz_5_on_q2;
             output[2][49] = yz_5_on_q2;
-            output[3][49] = s5_arm * t8_arm - c5_arm * u5_xy_arm;
+            output[3][49] = s5_arm * t8_arm - c5_arm * u5_xy_arm; // yz_5
             let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
             let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-            output[0][51] = minus_v5_by_1_x_arm * minus_u5_xx_arm
+            output[0][51] = minus_v5_by_1_x_arm * minus_u5_xx_arm // mx_5
                 + v5_by_1_y_arm * u5_yx_arm + v5_by_1_z_arm * u5_zx_arm
                 + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm;
             let my_5_on_q1 = v5_by_1_z_arm * u5_zy_arm
                 - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
                 + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
             output[0][52] = my_5_on_q1;
-            output[0][67] = my_5_on_q1;
+            output[0][67] = my_5_on_q1; // mz_6
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let zz_6_on_q5 = w5_x_arm * w6_z_arm;
             output[4][64] = zz_6_on_q5;
@@ -916,19 +916,19 @@ impl Rx90 {
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
             output[5][59] = xx_6_on_q6;
-            output[5][62] = -xx_6_on_q6;
+            output[5][62] = -xx_6_on_q6; // yy_6
             let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
             let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
             let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
             let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
                 - a5_z_arm * w5_by_2_y_arm;
-            output[2][51] = minus_v5_by_3_x_arm * minus_u5_xx_arm
+            output[2][51] = minus_v5_by_3_x_arm * minus_u5_xx_arm // mx_5
                 + v5_by_3_y_arm * u5_yx_arm - v4_by_3_y_u5_zx_arm
                 + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
             let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t4_arm;
             let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm
                 - minus_v5_by_3_x_arm * t4_arm;
-            output[1][51] = v5_by_2_y_arm * u5_yx_arm
+            output[1][51] = v5_by_2_y_arm * u5_yx_arm // mx_5
                 - v5_by_2_x_arm * minus_u5_xx_arm - v4_by_3_y_u5_zx_arm * t4_arm
                 + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
             let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
@@ -938,18 +938,18 @@ impl Rx90 {
                 - v5_by_2_y_arm * minus_u5_yy_arm - v4_by_3_y_u5_zy_arm * t4_arm
                 - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
             output[1][52] = my_5_on_q2;
-            output[1][67] = my_5_on_q2;
+            output[1][67] = my_5_on_q2; // mz_6
             let minus_my_5_on_q3 = minus_v5_by_3_x_arm * u5_xy_arm
                 + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
                 + c4_a5_x_minus_a5_z_w5_by_2_x_arm;
-            output[2][52] = -minus_my_5_on_q3;
-            output[2][67] = -minus_my_5_on_q3;
+            output[2][52] = -minus_my_5_on_q3; // my_5
+            output[2][67] = -minus_my_5_on_q3; // mz_6
             let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
             let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
             let minus_xx_6_on_q5 = zz_6_on_q5 + s6_arm * u6_zy_arm;
-            output[4][59] = -minus_xx_6_on_q5;
+            output[4][59] = -minus_xx_6_on_q5; // xx_6
             let yy_6_on_q5 = minus_xx_6_on_q5 - u5_xy_arm;
             output[4][62] = yy_6_on_q5;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
@@ -958,8 +958,8 @@ impl Rx90 {
             let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
             let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
             let minus_xy_6_on_q6 = t10_arm + u6_yy_minus_u5_yy_arm;
-            output[5][60] = -minus_xy_6_on_q6;
-            output[3][60] = -(c5_arm * minus_xy_6_on_q6
+            output[5][60] = -minus_xy_6_on_q6; // xy_6
+            output[3][60] = -(c5_arm * minus_xy_6_on_q6 // xy_6
                 + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5));
             let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
             let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm
@@ -968,9 +968,9 @@ impl Rx90 {
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
             let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-            output[0][60] = -(w5_by_1_y_arm * minus_xy_6_on_q6
+            output[0][60] = -(w5_by_1_y_arm * minus_xy_6_on_q6 // xy_6
                 + w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm);
-            output[4][60] = s6_arm * u6_zx_arm - c6_arm * u6_zy_arm;
+            output[4][60] = s6_arm * u6_zx_arm - c6_arm * u6_zy_arm; // xy_6
             let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
             let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
             let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm
@@ -981,18 +981,18 @@ impl Rx90 {
             let xx_6_on_q1 = w6_by_1_x_arm * wd6_x_arm
                 - minus_w6_by_1_y_w6_x_w6_z_arm + w5_by_1_y_arm * xx_6_on_q6;
             output[0][59] = xx_6_on_q1;
-            output[0][62] = zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1;
-            output[0][64] = minus_w6_by_1_y_w6_x_w6_z_arm
+            output[0][62] = zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1; // yy_6
+            output[0][64] = minus_w6_by_1_y_w6_x_w6_z_arm // zz_6
                 - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm;
             let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-            output[5][63] = u6_xz_arm;
+            output[5][63] = u6_xz_arm; // yz_6
             let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
-            output[4][61] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm);
+            output[4][61] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm); // xz_6
             let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-            output[5][61] = minus_u6_yz_arm;
-            output[0][61] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+            output[5][61] = minus_u6_yz_arm; // xz_6
+            output[0][61] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm // xz_6
                 + w5_by_1_y_arm * minus_u6_yz_arm;
-            output[3][61] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+            output[3][61] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm // xz_6
                 + c5_arm * minus_u6_yz_arm;
             let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
                 - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
@@ -1001,23 +1001,23 @@ impl Rx90 {
             let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
             let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
             let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
-            output[0][65] = minus_v6_by_1_x_arm * minus_u6_xx_arm
+            output[0][65] = minus_v6_by_1_x_arm * minus_u6_xx_arm // mx_6
                 + v6_by_1_y_arm * u6_yx_arm + v5_by_1_y_arm * u6_zx_arm
                 + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm;
             let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-            output[0][66] = minus_v6_by_1_x_arm * minus_u6_xy_arm
+            output[0][66] = minus_v6_by_1_x_arm * minus_u6_xy_arm // my_6
                 - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
                 + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm;
-            output[0][63] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+            output[0][63] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm // yz_6
                 - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm;
-            output[3][63] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+            output[3][63] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm // yz_6
                 - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm;
             let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
             let xx_6_on_q4 = wd6_x_arm * w6_by_4_x_arm
                 - minus_w6_by_4_y_w6_x_w6_z_arm + c5_arm * xx_6_on_q6;
             output[3][59] = xx_6_on_q4;
-            output[3][62] = s5_u5_zy_arm - xx_6_on_q4;
-            output[3][64] = minus_w6_by_4_y_w6_x_w6_z_arm
+            output[3][62] = s5_u5_zy_arm - xx_6_on_q4; // yy_6
+            output[3][64] = minus_w6_by_4_y_w6_x_w6_z_arm // zz_6
                 - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm;
             let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
             let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm
@@ -1036,7 +1036,7 @@ impl Rx90 {
                 + w5_by_2_y_arm * u6_xz_arm;
             output[1][63] = yz_6_on_q2;
             output[2][63] = yz_6_on_q2;
-            output[4][63] = -(s6_arm * u6_yy_minus_u5_yy_arm
+            output[4][63] = -(s6_arm * u6_yy_minus_u5_yy_arm // yz_6
                 + c6_arm * minus_u6_xy_arm);
             let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
             let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t4_arm;
@@ -1044,19 +1044,19 @@ impl Rx90 {
             let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
                 - c6_v4_by_3_y_arm * t4_arm;
             let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-            output[1][65] = v5_by_2_y_arm * u6_zx_arm
+            output[1][65] = v5_by_2_y_arm * u6_zx_arm // mx_6
                 - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
                 - t11_arm;
             let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
             let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-            output[2][65] = v6_by_3_y_arm * u6_yx_arm
+            output[2][65] = v6_by_3_y_arm * u6_yx_arm // mx_6
                 - v6_by_3_x_arm * minus_u6_xx_arm + v5_by_3_y_arm * u6_zx_arm
                 - t11_arm;
             let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-            output[1][66] = minus_v6_by_2_y_arm * minus_u6_yy_arm
+            output[1][66] = minus_v6_by_2_y_arm * minus_u6_yy_arm // my_6
                 - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
                 - t12_arm;
-            output[2][66] = v5_by_3_y_arm * u6_zy_arm
+            output[2][66] = v5_by_3_y_arm * u6_zy_arm // my_6
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
                 - t12_arm;
             ::core::result::Result::Ok(())
@@ -1088,10 +1088,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1112,204 +1112,204 @@ impl Rx90 {
             );
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
-            output[0][0] = joint_accelerations[0];
-            output[0][1] = joint_velocities[0];
-            output[0][3] = 1.0;
+            output[0][0] = joint_accelerations[0]; // zz_1R
+            output[0][1] = joint_velocities[0]; // fv_1
+            output[0][3] = 1.0; // off_1
             output[0][4..27].fill(0.0);
             output[1][0..4].fill(0.0);
-            output[1][4] = joint_accelerations[1];
-            output[1][5] = joint_velocities[1];
-            output[1][7] = 1.0;
+            output[1][4] = joint_accelerations[1]; // zz_2R
+            output[1][5] = joint_velocities[1]; // fv_2
+            output[1][7] = 1.0; // off_2
             output[1][8..24].fill(0.0);
             output[2][0..8].fill(0.0);
-            output[2][8] = joint_accelerations[2];
-            output[2][9] = joint_velocities[2];
-            output[2][11] = 1.0;
+            output[2][8] = joint_accelerations[2]; // ia_3
+            output[2][9] = joint_velocities[2]; // fv_3
+            output[2][11] = 1.0; // off_3
             output[2][12..24].fill(0.0);
             output[2][25..29].fill(0.0);
             output[2][30..32].fill(0.0);
             output[3][0..12].fill(0.0);
-            output[3][12] = joint_accelerations[3];
-            output[3][13] = joint_velocities[3];
-            output[3][15] = 1.0;
+            output[3][12] = joint_accelerations[3]; // ia_4
+            output[3][13] = joint_velocities[3]; // fv_4
+            output[3][15] = 1.0; // off_4
             output[3][16..36].fill(0.0);
-            output[3][41] = 0.0;
+            output[3][41] = 0.0; // mx_3
             output[4][0..16].fill(0.0);
-            output[4][16] = joint_accelerations[4];
-            output[4][17] = joint_velocities[4];
-            output[4][19] = 1.0;
+            output[4][16] = joint_accelerations[4]; // ia_5
+            output[4][17] = joint_velocities[4]; // fv_5
+            output[4][19] = 1.0; // off_5
             output[4][20..42].fill(0.0);
-            output[4][44] = 0.0;
-            output[4][51] = 0.0;
+            output[4][44] = 0.0; // my_4R
+            output[4][51] = 0.0; // mx_4
             output[5][0..20].fill(0.0);
-            output[5][20] = joint_accelerations[5];
-            output[5][21] = joint_velocities[5];
-            output[5][23] = 1.0;
+            output[5][20] = joint_accelerations[5]; // ia_6
+            output[5][21] = joint_velocities[5]; // fv_6
+            output[5][23] = 1.0; // off_6
             output[5][24..48].fill(0.0);
             output[5][50..52].fill(0.0);
-            output[5][55] = 0.0;
+            output[5][55] = 0.0; // mx_5
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
             (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            output[0][2] = ::overact::math::wide::sign(joint_velocities[0]);
-            output[1][6] = ::overact::math::wide::sign(joint_velocities[1]);
-            output[2][10] = ::overact::math::wide::sign(joint_velocities[2]);
-            output[3][14] = ::overact::math::wide::sign(joint_velocities[3]);
-            output[4][18] = ::overact::math::wide::sign(joint_velocities[4]);
-            output[5][22] = ::overact::math::wide::sign(joint_velocities[5]);
+            output[0][2] = ::overact::math::wide::sign(joint_velocities[0]); // fs_1
+            output[1][6] = ::overact::math::wide::sign(joint_velocities[1]); // fs_2
+            output[2][10] = ::overact::math::wide::sign(joint_velocities[2]); // fs_3
+            output[3][14] = ::overact::math::wide::sign(joint_velocities[3]); // fs_4
+            output[4][18] = ::overact::math::wide::sign(joint_velocities[4]); // fs_5
+            output[5][22] = ::overact::math::wide::sign(joint_velocities[5]); // fs_6
             // --- arm
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
-            output[1][24] = wd3_z_arm;
-            output[2][24] = wd3_z_arm;
+            output[1][24] = wd3_z_arm; // zz_3R
+            output[2][24] = wd3_z_arm; // zz_3R
             let a2_y_arm = 9.81 * c2_arm;
-            output[1][25] = a2_y_arm;
+            output[1][25] = a2_y_arm; // mx_2R
             let u2_xz_arm = c2_arm * joint_accelerations[0];
-            output[1][30] = u2_xz_arm;
+            output[1][30] = u2_xz_arm; // yz_2
             let a2_x_arm = 9.81 * s2_arm;
-            output[1][26] = -a2_x_arm;
+            output[1][26] = -a2_x_arm; // my_2
             let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
-            output[1][28] = minus_u2_yz_arm;
+            output[1][28] = minus_u2_yz_arm; // xz_2R
             let w2_x_arm = s2_arm * joint_velocities[0];
             let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
             let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
             let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
-            output[0][27] = -(c2_arm * u2_zx_arm);
+            output[0][27] = -(c2_arm * u2_zx_arm); // yy_2R
             let w2_y_arm = c2_arm * joint_velocities[0];
             let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
             let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
             let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-            output[0][31] = c2_arm * u2_zy_arm - s2_arm * u2_zx_arm;
+            output[0][31] = c2_arm * u2_zy_arm - s2_arm * u2_zx_arm; // xy_2
             let yy_2_on_q2 = w2_x_arm * w2_y_arm;
-            output[1][27] = yy_2_on_q2;
+            output[1][27] = yy_2_on_q2; // yy_2R
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
-            output[1][31] = w2_x_squared_arm - w2_y_squared_arm;
+            output[1][31] = w2_x_squared_arm - w2_y_squared_arm; // xy_2
             let u2_yx_arm = yy_2_on_q2 + joint_accelerations[1];
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-            output[0][28] = s2_arm * u2_yx_arm
+            output[0][28] = s2_arm * u2_yx_arm // xz_2R
                 + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
             let u2_xy_arm = yy_2_on_q2 - joint_accelerations[1];
-            output[0][30] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+            output[0][30] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm) // yz_2
                 - c2_arm * u2_xy_arm;
             let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
             let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
             let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
             let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
                 - s3_arm * a2_x_plus_d3_u2_xx_arm;
-            output[2][41] = a3_y_arm;
+            output[2][41] = a3_y_arm; // mx_3
             let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
             let u3_xz_arm = joint_accelerations[0] * c23_arm;
-            output[1][34] = u3_xz_arm;
-            output[2][34] = u3_xz_arm;
+            output[1][34] = u3_xz_arm; // yz_3
+            output[2][34] = u3_xz_arm; // yz_3
             let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
             let w3_x_arm = joint_velocities[0] * s23_arm;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
             let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
             let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
-            output[0][29] = -(c23_arm * u3_zx_arm);
+            output[0][29] = -(c23_arm * u3_zx_arm); // yy_3R
             let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
-            output[3][36] = wd4_z_arm;
+            output[3][36] = wd4_z_arm; // zz_4R
             let minus_v3_by_1_z_arm = D3 * c2_arm;
             let a3_z_arm = D3 * u2_zx_arm;
-            output[0][41] = -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm);
+            output[0][41] = -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm); // mx_3
             let w3_y_arm = joint_velocities[0] * c23_arm;
             let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
             let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
                 + joint_velocities[2] * w3_y_arm;
             let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-            output[0][32] = c23_arm * u3_zy_arm - s23_arm * u3_zx_arm;
+            output[0][32] = c23_arm * u3_zy_arm - s23_arm * u3_zx_arm; // xy_3
             let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
             let t2_arm = D3 * (s23_arm - c2_arm);
-            output[0][35] = t1_arm * t2_arm;
+            output[0][35] = t1_arm * t2_arm; // m_4R
             let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
-            output[1][33] = -u3_yz_arm;
-            output[2][33] = -u3_yz_arm;
+            output[1][33] = -u3_yz_arm; // xz_3
+            output[2][33] = -u3_yz_arm; // xz_3
             let yy_3_on_q2 = w3_x_arm * w3_y_arm;
-            output[1][29] = yy_3_on_q2;
-            output[2][29] = yy_3_on_q2;
+            output[1][29] = yy_3_on_q2; // yy_3R
+            output[2][29] = yy_3_on_q2; // yy_3R
             let u3_xy_arm = yy_3_on_q2 - wd3_z_arm;
             let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
                 + s3_arm * a2_y_plus_d3_u2_yx_arm;
             let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
             let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
-            output[2][35] = -minus_m_4_on_q3;
+            output[2][35] = -minus_m_4_on_q3; // m_4R
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-            output[0][34] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+            output[0][34] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm) // yz_3
                 - c23_arm * u3_xy_arm;
             let u3_yx_arm = yy_3_on_q2 + wd3_z_arm;
             let v3_by_2_y_arm = D3 * c3_arm;
             let v3_by_2_x_arm = D3 * s3_arm;
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-            output[1][41] = v3_by_2_y_arm * u3_yx_arm
+            output[1][41] = v3_by_2_y_arm * u3_yx_arm // mx_3
                 - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm;
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-            output[0][33] = s23_arm * u3_yx_arm
+            output[0][33] = s23_arm * u3_yx_arm // xz_3
                 + c23_arm * (w3_z_squared_arm - w3_x_squared_arm);
             let t3_arm = 1.0 - s3_arm;
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-            output[1][35] = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t3_arm;
+            output[1][35] = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t3_arm; // m_4R
             let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
             output[1][32] = xy_3_on_q2;
             output[2][32] = xy_3_on_q2;
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let zz_4_on_q2 = w3_x_arm * w4_z_arm;
-            output[1][36] = zz_4_on_q2;
-            output[2][36] = zz_4_on_q2;
+            output[1][36] = zz_4_on_q2; // zz_4R
+            output[2][36] = zz_4_on_q2; // zz_4R
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
-            output[3][37] = xx_4_on_q4;
+            output[3][37] = xx_4_on_q4; // xx_4R
             let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
-            output[3][44] = -a4_x_arm;
+            output[3][44] = -a4_x_arm; // my_4R
             let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
-            output[3][51] = -a5_z_arm;
-            output[3][50] = s5_arm * a5_z_arm;
-            output[3][55] = -(c5_arm * a5_z_arm);
+            output[3][51] = -a5_z_arm; // mx_4
+            output[3][50] = s5_arm * a5_z_arm; // my_5R
+            output[3][55] = -(c5_arm * a5_z_arm); // mx_5
             let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-            output[4][50] = -a5_x_arm;
+            output[4][50] = -a5_x_arm; // my_5R
             let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-            output[4][55] = a5_y_arm;
-            output[4][56] = c6_arm * a5_y_arm;
-            output[4][57] = -(s6_arm * a5_y_arm);
+            output[4][55] = a5_y_arm; // mx_5
+            output[4][56] = c6_arm * a5_y_arm; // mx_6
+            output[4][57] = -(s6_arm * a5_y_arm); // my_6
             let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-            output[5][56] = -minus_a6_y_arm;
+            output[5][56] = -minus_a6_y_arm; // mx_6
             let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-            output[3][56] = a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm;
+            output[3][56] = a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm; // mx_6
             let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-            output[5][57] = -a6_x_arm;
+            output[5][57] = -a6_x_arm; // my_6
             let w6_by_4_x_arm = s5_arm * c6_arm;
-            output[3][57] = a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm;
+            output[3][57] = a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm; // my_6
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
-            output[3][42] = -minus_zz_5_on_q4;
+            output[3][42] = -minus_zz_5_on_q4; // zz_5R
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
             let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
                 - joint_velocities[3] * minus_w4_y_arm;
             let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
             let minus_xx_4_on_q2 = zz_4_on_q2 + s4_arm * u4_zy_arm;
-            output[1][37] = -minus_xx_4_on_q2;
-            output[2][37] = -minus_xx_4_on_q2;
+            output[1][37] = -minus_xx_4_on_q2; // xx_4R
+            output[2][37] = -minus_xx_4_on_q2; // xx_4R
             let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
                 + joint_velocities[3] * w4_x_arm;
             let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-            output[4][42] = wd5_z_arm;
+            output[4][42] = wd5_z_arm; // zz_5R
             let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-            output[3][39] = minus_u4_yz_arm;
+            output[3][39] = minus_u4_yz_arm; // xz_4
             let w5_by_1_z_arm = s23_arm * s4_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
             let w4_by_1_x_arm = s23_arm * c4_arm;
-            output[0][36] = w5_by_1_z_w4_x_w4_z_arm
+            output[0][36] = w5_by_1_z_w4_x_w4_z_arm // zz_4R
                 - w4_by_1_x_arm * minus_w4_y_w4_z_arm + c23_arm * wd4_z_arm;
-            output[0][37] = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+            output[0][37] = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm // xx_4R
                 + c23_arm * xx_4_on_q4;
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-            output[3][38] = u4_xz_arm;
+            output[3][38] = u4_xz_arm; // yz_4
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
             let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
             output[1][40] = xy_4_on_q2;
@@ -1318,7 +1318,7 @@ impl Rx90 {
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let t4_arm = w4_z_squared_arm - w4_x_squared_arm;
             let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-            output[0][39] = w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm
+            output[0][39] = w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm // xz_4
                 + c23_arm * minus_u4_yz_arm;
             let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
             let minus_u4_xx_arm = t4_arm + minus_u3_yy_arm;
@@ -1326,76 +1326,76 @@ impl Rx90 {
             output[3][40] = xy_4_on_q4;
             let t5_arm = t4_arm + xy_4_on_q4;
             let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
-            output[0][38] = c23_arm * u4_xz_arm
+            output[0][38] = c23_arm * u4_xz_arm // yz_4
                 - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm);
-            output[0][40] = c23_arm * xy_4_on_q4
+            output[0][40] = c23_arm * xy_4_on_q4 // xy_4
                 - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm);
             let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
             let minus_yz_4_on_q2 = minus_c4_u4_xy_arm - s4_arm * t5_arm;
-            output[1][38] = -minus_yz_4_on_q2;
-            output[2][38] = -minus_yz_4_on_q2;
+            output[1][38] = -minus_yz_4_on_q2; // yz_4
+            output[2][38] = -minus_yz_4_on_q2; // yz_4
             let minus_v4_by_1_x_arm = s4_arm * t2_arm;
             let v5_by_1_z_arm = c4_arm * t2_arm;
-            output[0][44] = minus_v4_by_1_x_arm * minus_u4_xy_arm
+            output[0][44] = minus_v4_by_1_x_arm * minus_u4_xy_arm // my_4R
                 + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
                 - c23_arm * a4_x_arm;
             let v4_by_3_y_arm = D3 * s4_arm;
             let t6_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
             let s4_a4_z_arm = s4_arm * a4_z_arm;
-            output[1][44] = t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm
+            output[1][44] = t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm // my_4R
                 - s4_a4_z_arm;
-            output[2][44] = t6_arm - s4_a4_z_arm;
-            output[0][51] = minus_v4_by_1_x_arm * minus_u4_xx_arm
+            output[2][44] = t6_arm - s4_a4_z_arm; // my_4R
+            output[0][51] = minus_v4_by_1_x_arm * minus_u4_xx_arm // mx_4
                 - v5_by_1_z_arm * u4_yx_arm + w5_by_1_z_arm * a4_z_arm
                 - c23_arm * a5_z_arm;
             let s4_u4_yx_arm = s4_arm * u4_yx_arm;
             let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * t4_arm;
-            output[1][39] = -minus_xz_4_on_q2;
-            output[2][39] = -minus_xz_4_on_q2;
+            output[1][39] = -minus_xz_4_on_q2; // xz_4
+            output[2][39] = -minus_xz_4_on_q2; // xz_4
             let minus_v4_by_3_x_arm = D3 * c4_arm;
             let t7_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
             let c4_a4_z_arm = c4_arm * a4_z_arm;
-            output[1][51] = v3_by_2_y_arm * u4_zx_arm + t7_arm * t3_arm
+            output[1][51] = v3_by_2_y_arm * u4_zx_arm + t7_arm * t3_arm // mx_4
                 + c4_a4_z_arm;
-            output[2][51] = t7_arm + c4_a4_z_arm;
+            output[2][51] = t7_arm + c4_a4_z_arm; // mx_4
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
-            output[4][43] = -minus_xx_5_on_q5;
+            output[4][43] = -minus_xx_5_on_q5; // xx_5R
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
             let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
                 + joint_velocities[4] * w5_y_arm;
             let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-            output[3][43] = minus_zz_5_on_q4 + s5_arm * u5_zy_arm;
+            output[3][43] = minus_zz_5_on_q4 + s5_arm * u5_zy_arm; // xx_5R
             let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
                 - joint_velocities[4] * w5_x_arm;
             let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-            output[5][48] = wd6_z_arm;
+            output[5][48] = wd6_z_arm; // zz_6
             let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-            output[4][46] = -u5_yz_arm;
+            output[4][46] = -u5_yz_arm; // xz_5
             let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
             let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
-            output[0][42] = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+            output[0][42] = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm // zz_5R
                 + w5_by_1_z_arm * wd5_z_arm;
-            output[0][43] = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+            output[0][43] = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm // xx_5R
                 - w5_by_1_z_arm * minus_xx_5_on_q5;
             let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-            output[3][45] = c5_arm * u5_zy_arm - s5_arm * u5_zx_arm;
+            output[3][45] = c5_arm * u5_zy_arm - s5_arm * u5_zx_arm; // xy_5
             let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-            output[4][47] = u5_xz_arm;
+            output[4][47] = u5_xz_arm; // yz_5
             let minus_w5_by_2_x_arm = s4_arm * c5_arm;
             let w5_by_2_y_arm = s4_arm * s5_arm;
             let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
             let zz_5_on_q2 = c4_arm * wd5_z_arm
                 - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
-            output[1][42] = zz_5_on_q2;
-            output[2][42] = zz_5_on_q2;
+            output[1][42] = zz_5_on_q2; // zz_5R
+            output[2][42] = zz_5_on_q2; // zz_5R
             let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm
                 - wd5_x_arm * minus_w5_by_2_x_arm - c4_arm * minus_xx_5_on_q5;
-            output[1][43] = xx_5_on_q2;
-            output[2][43] = xx_5_on_q2;
+            output[1][43] = xx_5_on_q2; // xx_5R
+            output[2][43] = xx_5_on_q2; // xx_5R
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let zz_6_on_q5 = w5_x_arm * w6_z_arm;
             output[4][48] = zz_6_on_q5;
@@ -1403,7 +1403,7 @@ impl Rx90 {
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let xy_5_on_q5 = w5_x_squared_arm - w5_y_squared_arm;
             output[4][45] = xy_5_on_q5;
-            output[0][45] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+            output[0][45] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm // xy_5
                 + w5_by_1_z_arm * xy_5_on_q5;
             let xy_5_on_q2 = minus_w5_by_2_x_arm * u5_zx_arm
                 + w5_by_2_y_arm * u5_zy_arm + c4_arm * xy_5_on_q5;
@@ -1412,41 +1412,41 @@ impl Rx90 {
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
-            output[5][49] = xx_6_on_q6;
+            output[5][49] = xx_6_on_q6; // xx_6R
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
             let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
             let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-            output[4][49] = -(zz_6_on_q5 + s6_arm * u6_zy_arm);
+            output[4][49] = -(zz_6_on_q5 + s6_arm * u6_zy_arm); // xx_6R
             let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-            output[5][52] = minus_u6_yz_arm;
+            output[5][52] = minus_u6_yz_arm; // xz_6
             let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
             let t8_arm = w5_z_squared_arm - w5_x_squared_arm;
-            output[0][46] = w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t8_arm
+            output[0][46] = w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t8_arm // xz_5
                 - w5_by_1_z_arm * u5_yz_arm;
             let xz_5_on_q2 = w5_by_2_y_arm * t8_arm - minus_w5_by_2_x_arm * u5_yx_arm
                 - c4_arm * u5_yz_arm;
             output[1][46] = xz_5_on_q2;
             output[2][46] = xz_5_on_q2;
-            output[3][46] = s5_arm * u5_yx_arm + c5_arm * t8_arm;
+            output[3][46] = s5_arm * u5_yx_arm + c5_arm * t8_arm; // xz_5
             let t9_arm = w5_y_squared_arm - w5_z_squared_arm;
             let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-            output[0][47] = w5_by_1_x_arm * t9_arm - w5_by_1_y_arm * u5_xy_arm
+            output[0][47] = w5_by_1_x_arm * t9_arm - w5_by_1_y_arm * u5_xy_arm // yz_5
                 + w5_by_1_z_arm * u5_xz_arm;
             let yz_5_on_q2 = c4_arm * u5_xz_arm
                 - (minus_w5_by_2_x_arm * t9_arm + w5_by_2_y_arm * u5_xy_arm);
             output[1][47] = yz_5_on_q2;
             output[2][47] = yz_5_on_q2;
-            output[3][47] = s5_arm * t9_arm - c5_arm * u5_xy_arm;
+            output[3][47] = s5_arm * t9_arm - c5_arm * u5_xy_arm; // yz_5
             let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
             let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
             let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-            output[0][50] = v5_by_1_z_arm * u5_zy_arm
+            output[0][50] = v5_by_1_z_arm * u5_zy_arm // my_5R
                 - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
                 + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
             let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-            output[0][55] = minus_v5_by_1_x_arm * minus_u5_xx_arm
+            output[0][55] = minus_v5_by_1_x_arm * minus_u5_xx_arm // mx_5
                 + v5_by_1_y_arm * u5_yx_arm + v5_by_1_z_arm * u5_zx_arm
                 + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm;
             let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
@@ -1457,40 +1457,40 @@ impl Rx90 {
             let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
             let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
                 + c4_arm * a5_x_arm;
-            output[1][50] = v5_by_2_x_arm * u5_xy_arm
+            output[1][50] = v5_by_2_x_arm * u5_xy_arm // my_5R
                 - v5_by_2_y_arm * minus_u5_yy_arm - v4_by_3_y_u5_zy_arm * t3_arm
                 - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
-            output[2][50] = -(minus_v5_by_3_x_arm * u5_xy_arm
+            output[2][50] = -(minus_v5_by_3_x_arm * u5_xy_arm // my_5R
                 + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
                 + c4_a5_x_minus_a5_z_w5_by_2_x_arm);
             let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
             let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
                 - a5_z_arm * w5_by_2_y_arm;
-            output[1][55] = v5_by_2_y_arm * u5_yx_arm
+            output[1][55] = v5_by_2_y_arm * u5_yx_arm // mx_5
                 - v5_by_2_x_arm * minus_u5_xx_arm - v4_by_3_y_u5_zx_arm * t3_arm
                 + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
-            output[2][55] = minus_v5_by_3_x_arm * minus_u5_xx_arm
+            output[2][55] = minus_v5_by_3_x_arm * minus_u5_xx_arm // mx_5
                 + v5_by_3_y_arm * u5_yx_arm - v4_by_3_y_u5_zx_arm
                 + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
             let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-            output[5][53] = u6_xz_arm;
+            output[5][53] = u6_xz_arm; // yz_6
             let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-            output[4][54] = s6_arm * u6_zx_arm - c6_arm * u6_zy_arm;
+            output[4][54] = s6_arm * u6_zx_arm - c6_arm * u6_zy_arm; // xy_6
             let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm
                 + w5_by_1_z_arm * c6_arm;
             let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
             let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-            output[0][48] = minus_w6_by_1_y_w6_x_w6_z_arm
+            output[0][48] = minus_w6_by_1_y_w6_x_w6_z_arm // zz_6
                 - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm;
-            output[0][49] = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
+            output[0][49] = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm // xx_6R
                 + w5_by_1_y_arm * xx_6_on_q6;
             let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
-            output[3][48] = minus_w6_by_4_y_w6_x_w6_z_arm
+            output[3][48] = minus_w6_by_4_y_w6_x_w6_z_arm // zz_6
                 - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm;
-            output[3][49] = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
+            output[3][49] = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm // xx_6R
                 + c5_arm * xx_6_on_q6;
             let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
             let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
@@ -1501,41 +1501,41 @@ impl Rx90 {
             output[2][48] = zz_6_on_q2;
             let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm
                 - wd6_x_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * xx_6_on_q6;
-            output[1][49] = xx_6_on_q2;
-            output[2][49] = xx_6_on_q2;
+            output[1][49] = xx_6_on_q2; // xx_6R
+            output[2][49] = xx_6_on_q2; // xx_6R
             let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let w6_x_squared_arm = w6_x_arm * w6_x_arm;
             let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
-            output[0][52] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+            output[0][52] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm // xz_6
                 + w5_by_1_y_arm * minus_u6_yz_arm;
             let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
             let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
             let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-            output[0][53] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+            output[0][53] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm // yz_6
                 - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm;
-            output[3][52] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+            output[3][52] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm // xz_6
                 + c5_arm * minus_u6_yz_arm;
             let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
                 - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
             output[1][52] = xz_6_on_q2;
             output[2][52] = xz_6_on_q2;
-            output[4][52] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm);
-            output[3][53] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+            output[4][52] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm); // xz_6
+            output[3][53] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm // yz_6
                 - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm;
             let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
             let xy_6_on_q6 = minus_u6_yy_arm - minus_u6_xx_arm;
             output[5][54] = xy_6_on_q6;
-            output[3][54] = c5_arm * xy_6_on_q6
+            output[3][54] = c5_arm * xy_6_on_q6 // xy_6
                 - (w6_by_4_x_arm * u6_zx_arm + minus_w6_by_4_y_arm * u6_zy_arm);
             let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
                 - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm
                 + w5_by_2_y_arm * u6_xz_arm;
             output[1][53] = yz_6_on_q2;
             output[2][53] = yz_6_on_q2;
-            output[4][53] = -(s6_arm * u6_yy_minus_u5_yy_arm
+            output[4][53] = -(s6_arm * u6_yy_minus_u5_yy_arm // yz_6
                 + c6_arm * minus_u6_xy_arm);
-            output[0][54] = w5_by_1_y_arm * xy_6_on_q6
+            output[0][54] = w5_by_1_y_arm * xy_6_on_q6 // xy_6
                 - (w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm);
             let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm
                 + w6_by_2_y_arm * u6_zy_arm + w5_by_2_y_arm * xy_6_on_q6;
@@ -1543,10 +1543,10 @@ impl Rx90 {
             output[2][54] = xy_6_on_q2;
             let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
             let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
-            output[0][56] = minus_v6_by_1_x_arm * minus_u6_xx_arm
+            output[0][56] = minus_v6_by_1_x_arm * minus_u6_xx_arm // mx_6
                 + v6_by_1_y_arm * u6_yx_arm + v5_by_1_y_arm * u6_zx_arm
                 + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm;
-            output[0][57] = minus_v6_by_1_x_arm * minus_u6_xy_arm
+            output[0][57] = minus_v6_by_1_x_arm * minus_u6_xy_arm // my_6
                 - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
                 + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm;
             let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
@@ -1555,19 +1555,19 @@ impl Rx90 {
             let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
                 - c6_v4_by_3_y_arm * t3_arm;
             let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-            output[1][56] = v5_by_2_y_arm * u6_zx_arm
+            output[1][56] = v5_by_2_y_arm * u6_zx_arm // mx_6
                 - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
                 - t11_arm;
             let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
             let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-            output[2][56] = v6_by_3_y_arm * u6_yx_arm
+            output[2][56] = v6_by_3_y_arm * u6_yx_arm // mx_6
                 - v6_by_3_x_arm * minus_u6_xx_arm + v5_by_3_y_arm * u6_zx_arm
                 - t11_arm;
             let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-            output[1][57] = minus_v6_by_2_y_arm * minus_u6_yy_arm
+            output[1][57] = minus_v6_by_2_y_arm * minus_u6_yy_arm // my_6
                 - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
                 - t12_arm;
-            output[2][57] = v5_by_3_y_arm * u6_zy_arm
+            output[2][57] = v5_by_3_y_arm * u6_zy_arm // my_6
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
                 - t12_arm;
             ::core::result::Result::Ok(())

@@ -1501,10 +1501,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1530,8 +1530,8 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][30] = acceleration[0];
-            output[1][30] = acceleration[1];
+            output[0][30] = acceleration[0]; // m_platform
+            output[1][30] = acceleration[1]; // m_platform
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -1575,16 +1575,16 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg2;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][14] = g1_vx_leg2;
+            output[0][14] = g1_vx_leg2; // off_1_leg2
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][14] = -minus_g1_vy_leg2;
+            output[1][14] = -minus_g1_vy_leg2; // off_1_leg2
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][12] = g1_vx_leg2 * rate_1_leg2;
-            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][13] = -::overact::math::wide::signed(
+            output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 rate_1_leg2,
             );
@@ -1595,16 +1595,16 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg3;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][24] = g1_vx_leg3;
+            output[0][24] = g1_vx_leg3; // off_1_leg3
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][24] = -minus_g1_vy_leg3;
+            output[1][24] = -minus_g1_vy_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][22] = g1_vx_leg3 * rate_1_leg3;
-            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][23] = -::overact::math::wide::signed(
+            output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -1613,26 +1613,26 @@ impl ThreeLegPoint {
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][4] = -minus_g1_vx_leg1;
+            output[0][4] = -minus_g1_vx_leg1; // off_1_leg1
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][4] = g1_vy_leg1;
+            output[1][4] = g1_vy_leg1; // off_1_leg1
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][2] = g1_vy_leg1 * rate_1_leg1;
-            output[0][3] = -::overact::math::wide::signed(
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let t1_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
-            output[1][9] = d_x_leg1 * t1_leg1;
+            output[1][9] = d_x_leg1 * t1_leg1; // fs_2_leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
@@ -1642,7 +1642,7 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
-            output[0][1] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
@@ -1650,24 +1650,24 @@ impl ThreeLegPoint {
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
             let inv_l_1_dvx = INV_L_1 * acceleration[0];
-            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1;
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-            output[1][0] = -minus_zz_1_leg1_on_vy;
-            output[1][1] = -minus_zz_1_leg1_on_vy;
+            output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
+            output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
-            output[0][9] = pose[0] * t1_leg1;
-            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            output[0][9] = pose[0] * t1_leg1; // fs_2_leg1
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * acceleration[1];
-            output[1][6] = inv_l_1_dvy
+            output[1][6] = inv_l_1_dvy // mx_2_leg1
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
-            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t3_leg3 = INV_L_1 * y_plus_half_radius;
@@ -1684,35 +1684,35 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2;
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
-            output[0][19] = -(t3_leg2 * t4_leg2);
+            output[0][19] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
             let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-            output[0][10] = -minus_zz_1_leg2_on_vx;
-            output[0][11] = -minus_zz_1_leg2_on_vx;
+            output[0][10] = -minus_zz_1_leg2_on_vx; // zz_1_leg2
+            output[0][11] = -minus_zz_1_leg2_on_vx; // ia_1_leg2
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
-            output[0][16] = inv_l_1_dvx
+            output[0][16] = inv_l_1_dvx // mx_2_leg2
                 - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
-            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
                 + minus_g1_vy_leg2 * a_on_f2_leg2);
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
-            output[1][11] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
             let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = zz_2_leg2_on_vy;
-            output[1][16] = inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
-            output[1][19] = -(t3_leg3 * t4_leg2);
-            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx);
-            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
+            output[1][16] = inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy); // mx_2_leg2
+            output[1][19] = -(t3_leg3 * t4_leg2); // fs_2_leg2
+            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx); // m_2_leg2
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
@@ -1732,31 +1732,31 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_vx;
-            output[0][21] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx; // ia_1_leg3
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
                 + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_vx;
-            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            output[0][29] = -(t4_leg3 * t5_leg3);
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][29] = -(t4_leg3 * t5_leg3); // fs_2_leg3
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3;
-            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][20] = -minus_zz_1_leg3_on_vy;
-            output[1][21] = -minus_zz_1_leg3_on_vy;
+            output[1][20] = -minus_zz_1_leg3_on_vy; // zz_1_leg3
+            output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[1][26] = inv_l_1_dvy
+            output[1][26] = inv_l_1_dvy // mx_2_leg3
                 - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
-            output[1][29] = -(t3_leg3 * t5_leg3);
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
-            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            output[1][29] = -(t3_leg3 * t5_leg3); // fs_2_leg3
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -1789,10 +1789,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -1814,8 +1814,8 @@ impl ThreeLegPoint {
             const L_1: ::core::primitive::f64 = 0.24;
             /// l_1²
             const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-            output[0][30] = acceleration[0];
-            output[1][30] = acceleration[1];
+            output[0][30] = acceleration[0]; // m_platform
+            output[1][30] = acceleration[1]; // m_platform
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -1828,18 +1828,18 @@ impl ThreeLegPoint {
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-            output[0][4] = -minus_g1_vx_leg1;
+            output[0][4] = -minus_g1_vx_leg1; // off_1_leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
-            output[1][4] = g1_vy_leg1;
+            output[1][4] = g1_vy_leg1; // off_1_leg1
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][2] = g1_vy_leg1 * rate_1_leg1;
-            output[0][3] = -::overact::math::wide::signed(
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -1852,55 +1852,55 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
-            output[0][7] = g2_vx_leg1 * a_on_f1_leg1
+            output[0][7] = g2_vx_leg1 * a_on_f1_leg1 // my_2_leg1
                 - minus_g1_vx_leg1 * a_on_f2_leg1;
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][9] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1);
+            output[0][9] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
-            output[0][1] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
             let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_vx;
+            output[0][5] = -minus_zz_2_leg1_on_vx; // zz_2_leg1
             let inv_l_1_dvx = INV_L_1 * acceleration[0];
-            output[0][6] = inv_l_1_dvx
+            output[0][6] = inv_l_1_dvx // mx_2_leg1
                 - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx);
-            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * a_on_f1_leg1;
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][9] = -::overact::math::wide::signed(
+            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 qd_2_leg1,
             );
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-            output[1][0] = -minus_zz_1_leg1_on_vy;
-            output[1][1] = -minus_zz_1_leg1_on_vy;
+            output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
+            output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
-            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * acceleration[1];
-            output[1][6] = inv_l_1_dvy
+            output[1][6] = inv_l_1_dvy // mx_2_leg1
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
-            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
             let k_leg2 = INV_L_1 / s2_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][14] = g1_vx_leg2;
+            output[0][14] = g1_vx_leg2; // off_1_leg2
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][14] = -minus_g1_vy_leg2;
+            output[1][14] = -minus_g1_vy_leg2; // off_1_leg2
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][12] = g1_vx_leg2 * rate_1_leg2;
-            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][13] = -::overact::math::wide::signed(
+            output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 rate_1_leg2,
             );
@@ -1919,52 +1919,52 @@ impl ThreeLegPoint {
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - c2_leg2 * l_1_rate_1_squared_leg2);
             let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
-            output[0][10] = -minus_zz_1_leg2_on_vx;
-            output[0][11] = -minus_zz_1_leg2_on_vx;
+            output[0][10] = -minus_zz_1_leg2_on_vx; // zz_1_leg2
+            output[0][11] = -minus_zz_1_leg2_on_vx; // ia_1_leg2
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
-            output[0][16] = inv_l_1_dvx
+            output[0][16] = inv_l_1_dvx // mx_2_leg2
                 - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = -::overact::math::wide::signed(
+            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vx_leg2,
                 qd_2_leg2,
             );
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2;
-            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
                 - minus_g1_vy_leg2 * a_on_f2_leg2;
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][19] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
+            output[1][19] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
-            output[1][11] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
             let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_vy;
-            output[1][16] = inv_l_1_dvy
+            output[1][15] = -minus_zz_2_leg2_on_vy; // zz_2_leg2
+            output[1][16] = inv_l_1_dvy // mx_2_leg2
                 - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
-            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx);
-            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
+            output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx); // m_2_leg2
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
             let k_leg3 = INV_L_1 / s2_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][24] = g1_vx_leg3;
+            output[0][24] = g1_vx_leg3; // off_1_leg3
             let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][24] = -minus_g1_vy_leg3;
+            output[1][24] = -minus_g1_vy_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][22] = g1_vx_leg3 * rate_1_leg3;
-            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][23] = -::overact::math::wide::signed(
+            output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -1984,36 +1984,36 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_vx;
-            output[0][21] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx; // ia_1_leg3
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
             let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
-            output[0][25] = -minus_zz_2_leg3_on_vx;
-            output[0][26] = inv_l_1_dvx
+            output[0][25] = -minus_zz_2_leg3_on_vx; // zz_2_leg3
+            output[0][26] = inv_l_1_dvx // mx_2_leg3
                 - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx);
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][20] = -minus_zz_1_leg3_on_vy;
-            output[1][21] = -minus_zz_1_leg3_on_vy;
+            output[1][20] = -minus_zz_1_leg3_on_vy; // zz_1_leg3
+            output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[1][26] = inv_l_1_dvy
+            output[1][26] = inv_l_1_dvy // mx_2_leg3
                 - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = -::overact::math::wide::signed(
+            output[0][29] = -::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 qd_2_leg3,
             );
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 - g1_vx_leg3 * a_on_f2_leg3;
-            output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3
+            output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
                 - g2_vy_leg3 * a_on_f1_leg3;
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            output[1][29] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3);
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
-            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            output[1][29] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -2047,10 +2047,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2125,7 +2125,7 @@ impl ThreeLegPoint {
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][4] = -minus_g1_vx_leg1;
+            output[0][4] = -minus_g1_vx_leg1; // off_1_leg1
             // --- leg2
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -2135,7 +2135,7 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg2;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][14] = g1_vx_leg2;
+            output[0][14] = g1_vx_leg2; // off_1_leg2
             // --- leg3
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -2143,7 +2143,7 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][24] = g1_vx_leg3;
+            output[0][24] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -2156,15 +2156,15 @@ impl ThreeLegPoint {
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][4] = g1_vy_leg1;
+            output[1][4] = g1_vy_leg1; // off_1_leg1
             let t2_leg3 = y_plus_half_radius * INV_L_1;
             let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
             let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-            output[1][14] = g1_vy_leg2;
+            output[1][14] = g1_vy_leg2; // off_1_leg2
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][24] = -minus_g1_vy_leg3;
+            output[1][24] = -minus_g1_vy_leg3; // off_1_leg3
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
@@ -2185,23 +2185,23 @@ impl ThreeLegPoint {
                 / pivot_2;
             let vx = t1 / s_1_1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][2] = g1_vy_leg1 * rate_1_leg1;
-            output[0][3] = -::overact::math::wide::signed(
+            output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
-            output[0][12] = g1_vx_leg2 * rate_1_leg2;
-            output[1][12] = g1_vy_leg2 * rate_1_leg2;
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][12] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
+            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-            output[0][22] = g1_vx_leg3 * rate_1_leg3;
-            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][23] = -::overact::math::wide::signed(
+            output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -2211,8 +2211,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
-            output[1][9] = d_x_leg1 * t1_leg1;
-            output[0][9] = pose[0] * t1_leg1;
+            output[1][9] = d_x_leg1 * t1_leg1; // fs_2_leg1
+            output[0][9] = pose[0] * t1_leg1; // fs_2_leg1
             // --- leg2
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let t3_leg2 = t1_leg2 * INV_L_1;
@@ -2221,8 +2221,8 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
-            output[0][19] = -(t3_leg2 * t4_leg2);
-            output[1][19] = -(t2_leg3 * t4_leg2);
+            output[0][19] = -(t3_leg2 * t4_leg2); // fs_2_leg2
+            output[1][19] = -(t2_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
@@ -2232,8 +2232,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            output[0][29] = -(t3_leg3 * t4_leg3);
-            output[1][29] = -(t2_leg3 * t4_leg3);
+            output[0][29] = -(t3_leg3 * t4_leg3); // fs_2_leg3
+            output[1][29] = -(t2_leg3 * t4_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
@@ -2272,16 +2272,16 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 + minus_l_2_1 * t2) / pivot_2;
-            output[1][30] = dvy;
+            output[1][30] = dvy; // m_platform
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-            output[0][30] = dvx;
+            output[0][30] = dvx; // m_platform
             // --- leg2
             let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
             let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
@@ -2289,7 +2289,7 @@ impl ThreeLegPoint {
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3;
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
@@ -2297,7 +2297,7 @@ impl ThreeLegPoint {
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
-            output[0][1] = zz_1_leg1_on_vx;
+            output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
@@ -2306,67 +2306,67 @@ impl ThreeLegPoint {
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
             let inv_l_1_dvx = INV_L_1 * dvx;
-            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1;
             // --- leg2
             let rate_dot_1_leg2 = k_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
             let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
             output[0][10] = zz_1_leg2_on_vx;
-            output[0][11] = zz_1_leg2_on_vx;
+            output[0][11] = zz_1_leg2_on_vx; // ia_1_leg2
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
-            output[0][16] = inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx);
+            output[0][16] = inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx); // mx_2_leg2
             // --- leg3
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_vx;
-            output[0][21] = zz_1_leg3_on_vx;
+            output[0][21] = zz_1_leg3_on_vx; // ia_1_leg3
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_vx;
-            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
-            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+            output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
                 - g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-            output[1][0] = -minus_zz_1_leg1_on_vy;
-            output[1][1] = -minus_zz_1_leg1_on_vy;
+            output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
+            output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
             let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
-            output[1][11] = zz_1_leg2_on_vy;
+            output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
             let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_vy;
+            output[1][15] = -minus_zz_2_leg2_on_vy; // zz_2_leg2
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][20] = -minus_zz_1_leg3_on_vy;
-            output[1][21] = -minus_zz_1_leg3_on_vy;
+            output[1][20] = -minus_zz_1_leg3_on_vy; // zz_1_leg3
+            output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx;
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * dvy;
-            output[1][6] = inv_l_1_dvy
+            output[1][6] = inv_l_1_dvy // mx_2_leg1
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
-            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy);
-            output[1][16] = inv_l_1_dvy
+            output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
+            output[1][16] = inv_l_1_dvy // mx_2_leg2
                 - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
-            output[1][26] = inv_l_1_dvy
+            output[1][26] = inv_l_1_dvy // mx_2_leg3
                 - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
-            output[0][18] = L_1_SQUARED * zz_1_leg2_on_vx;
-            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy;
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx;
-            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy);
+            output[0][18] = L_1_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
+            output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
+            output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -2396,10 +2396,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2425,12 +2425,12 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
-            output[0][18] = 0.0;
+            output[0][18] = 0.0; // m_2_leg2
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][14] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][14] = 1.0; // off_1_leg2
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -2493,22 +2493,22 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][2] = rate_1_leg1; // fv_1_leg1
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][12] = rate_1_leg2;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][12] = rate_1_leg2; // fv_1_leg2
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1];
-            output[0][30] = -minus_m_platform_on_q1_leg1;
+            output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1];
-            output[1][30] = -minus_m_platform_on_q1_leg2;
+            output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -2526,8 +2526,8 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2;
-            output[1][11] = -minus_rate_dot_1_leg2;
+            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
@@ -2535,26 +2535,26 @@ impl ThreeLegPoint {
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
-            output[1][16] = L_1
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
+            output[1][16] = L_1 // mx_2_leg2
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t1_platform;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
+            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
-            output[0][19] = -::overact::math::wide::signed(
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_g2_a1_leg2,
                 qd_2_leg2,
             );
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t2_platform);
-            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t2_platform); // mx_2_leg2
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -2567,8 +2567,8 @@ impl ThreeLegPoint {
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            output[0][0] = -minus_rate_dot_1_leg1;
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][0] = -minus_rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
@@ -2576,26 +2576,26 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
                 - t2_platform;
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -::overact::math::wide::signed(
+            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
-            output[0][9] = -::overact::math::wide::signed(
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
+            output[0][9] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
             );
-            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t1_platform;
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t1_platform; // mx_2_leg1
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
             // --- leg3
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -2610,15 +2610,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][24] = g1_a1_leg3;
+            output[0][24] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][24] = g1_a2_leg3;
-            output[1][22] = g1_a2_leg3 * rate_1_leg3;
-            output[0][22] = g1_a1_leg3 * rate_1_leg3;
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][24] = g1_a2_leg3; // off_1_leg3
+            output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -2637,7 +2637,7 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_q1_leg1;
-            output[0][21] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
@@ -2646,30 +2646,30 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t2_platform
+            output[0][26] = -(t2_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t1_platform
+            output[1][26] = -(t1_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
+            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
-            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
-            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[1][29] = ::overact::math::wide::signed(
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
-            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -2702,10 +2702,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -2727,12 +2727,12 @@ impl ThreeLegPoint {
             const L_1: ::core::primitive::f64 = 0.24;
             /// l_1²
             const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
-            output[0][18] = 0.0;
+            output[0][18] = 0.0; // m_2_leg2
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][14] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][14] = 1.0; // off_1_leg2
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -2763,22 +2763,22 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][2] = rate_1_leg1; // fv_1_leg1
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][12] = rate_1_leg2;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][12] = rate_1_leg2; // fv_1_leg2
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1];
-            output[0][30] = -minus_m_platform_on_q1_leg1;
+            output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1];
-            output[1][30] = -minus_m_platform_on_q1_leg2;
+            output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             // --- leg1
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
@@ -2791,8 +2791,8 @@ impl ThreeLegPoint {
             let v2_by_1_y_leg1 = L_1 * c2_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][0] = -minus_rate_dot_1_leg1;
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][0] = -minus_rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - g2_vx_leg1 * minus_vx_by_a1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
@@ -2800,25 +2800,25 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
                 - t1_platform;
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
-            output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
-            output[0][9] = ::overact::math::wide::signed(
+            output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
+            output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
+            output[0][9] = ::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 qd_2_leg1,
             );
-            output[1][7] = g2_a2_leg1 * a_on_f1_leg1;
+            output[1][7] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -2833,8 +2833,8 @@ impl ThreeLegPoint {
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2;
-            output[1][11] = -minus_rate_dot_1_leg2;
+            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
@@ -2842,23 +2842,23 @@ impl ThreeLegPoint {
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
-            output[1][16] = L_1
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
+            output[1][16] = L_1 // mx_2_leg2
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
             let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
                 - g2_vy_leg2 * minus_vy_by_a1;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
+            output[0][19] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
+            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            output[0][17] = g2_a1_leg2 * a_on_f1_leg2;
+            output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[0][15] = -minus_zz_2_leg2_on_q1_leg1;
-            output[0][16] = L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform;
-            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
+            output[0][15] = -minus_zz_2_leg2_on_q1_leg1; // zz_2_leg2
+            output[0][16] = L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform; // mx_2_leg2
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -2869,15 +2869,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][24] = g1_a1_leg3;
+            output[0][24] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][24] = g1_a2_leg3;
-            output[1][22] = g1_a2_leg3 * rate_1_leg3;
-            output[0][22] = g1_a1_leg3 * rate_1_leg3;
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][24] = g1_a2_leg3; // off_1_leg3
+            output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -2893,7 +2893,7 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_q1_leg1;
-            output[0][21] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
@@ -2902,30 +2902,30 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform
+            output[0][26] = -(t1_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
+            output[1][26] = -(t2_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
+            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
-            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
-            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[1][29] = ::overact::math::wide::signed(
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
-            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -2959,10 +2959,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2997,12 +2997,12 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][4] = 1.0;
+            output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
-            output[0][18] = 0.0;
+            output[0][18] = 0.0; // m_2_leg2
             output[1][0..5].fill(0.0);
-            output[1][8] = 0.0;
-            output[1][14] = 1.0;
+            output[1][8] = 0.0; // m_2_leg1
+            output[1][14] = 1.0; // off_1_leg2
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -3105,32 +3105,32 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
             let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-            output[0][2] = rate_1_leg1;
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][2] = rate_1_leg1; // fv_1_leg1
+            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-            output[1][12] = rate_1_leg2;
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][12] = rate_1_leg2; // fv_1_leg2
+            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][24] = g1_a1_leg3;
+            output[0][24] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-            output[0][22] = g1_a1_leg3 * rate_1_leg3;
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = -::overact::math::wide::signed(
+            output[0][9] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
             );
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][9] = -::overact::math::wide::signed(
+            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
@@ -3138,9 +3138,9 @@ impl ThreeLegPoint {
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][24] = g1_a2_leg3;
-            output[1][22] = g1_a2_leg3 * rate_1_leg3;
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][24] = g1_a2_leg3; // off_1_leg3
+            output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -3203,25 +3203,25 @@ impl ThreeLegPoint {
                 + bias_a_on_f2_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-            output[0][0] = -minus_rate_dot_1_leg1;
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][0] = -minus_rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
                 + minus_vy_by_a1 * dvy;
-            output[0][30] = -minus_m_platform_on_q1_leg1;
+            output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
                 - t1_platform;
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
@@ -3230,7 +3230,7 @@ impl ThreeLegPoint {
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
             output[0][20] = zz_1_leg3_on_q1_leg1;
-            output[0][21] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -3240,66 +3240,66 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform
+            output[0][26] = -(t1_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform);
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
             let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
                 + minus_vy_by_a2 * dvy;
-            output[1][30] = -minus_m_platform_on_q1_leg2;
+            output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
+            output[1][26] = -(t2_platform // mx_2_leg3
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
-            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1;
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2;
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2;
-            output[1][11] = -minus_rate_dot_1_leg2;
+            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2;
-            output[1][16] = L_1
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
+            output[1][16] = L_1 // mx_2_leg2
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
+            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
-            output[0][19] = -::overact::math::wide::signed(
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_g2_a1_leg2,
                 qd_2_leg2,
             );
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
+            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
-            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
-            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[1][29] = ::overact::math::wide::signed(
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1);
-            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2);
-            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1;
-            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2;
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
+            output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
+            output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -3329,10 +3329,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3358,8 +3358,8 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][0] = acceleration[0];
-            output[1][0] = acceleration[1];
+            output[0][0] = acceleration[0]; // m_platformR
+            output[1][0] = acceleration[1]; // m_platformR
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -3403,16 +3403,16 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg2;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][11] = g1_vx_leg2;
+            output[0][11] = g1_vx_leg2; // off_1_leg2
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][11] = -minus_g1_vy_leg2;
+            output[1][11] = -minus_g1_vy_leg2; // off_1_leg2
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][5] = g1_vx_leg2 * rate_1_leg2;
-            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][8] = -::overact::math::wide::signed(
+            output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 rate_1_leg2,
             );
@@ -3423,16 +3423,16 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg3;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][12] = g1_vx_leg3;
+            output[0][12] = g1_vx_leg3; // off_1_leg3
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][12] = -minus_g1_vy_leg3;
+            output[1][12] = -minus_g1_vy_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][6] = g1_vx_leg3 * rate_1_leg3;
-            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][9] = -::overact::math::wide::signed(
+            output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -3441,27 +3441,27 @@ impl ThreeLegPoint {
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][10] = -minus_g1_vx_leg1;
+            output[0][10] = -minus_g1_vx_leg1; // off_1_leg1
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][10] = g1_vy_leg1;
+            output[1][10] = g1_vy_leg1; // off_1_leg1
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][4] = g1_vy_leg1 * rate_1_leg1;
-            output[0][7] = -::overact::math::wide::signed(
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
-            output[1][19] = d_x_leg1 * t1_leg1;
-            output[0][19] = pose[0] * t1_leg1;
+            output[1][19] = d_x_leg1 * t1_leg1; // fs_2_leg1
+            output[0][19] = pose[0] * t1_leg1; // fs_2_leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
@@ -3469,20 +3469,20 @@ impl ThreeLegPoint {
             let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
-            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1;
-            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
-            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t3_leg3 = y_plus_half_radius * INV_L_1;
@@ -3499,24 +3499,24 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2;
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
-            output[0][20] = -(t3_leg2 * t4_leg2);
+            output[0][20] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2);
+            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
                 + minus_g1_vy_leg2 * a_on_f2_leg2);
-            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-            output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-            output[1][20] = -(t3_leg3 * t4_leg2);
+            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
+            output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
+            output[1][20] = -(t3_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
@@ -3532,24 +3532,24 @@ impl ThreeLegPoint {
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
                 + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            output[0][21] = -(t4_leg3 * t5_leg3);
-            output[1][21] = -(t3_leg3 * t5_leg3);
+            output[0][21] = -(t4_leg3 * t5_leg3); // fs_2_leg3
+            output[1][21] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
-            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
-            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
+            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -3582,10 +3582,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -3605,8 +3605,8 @@ impl ThreeLegPoint {
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
-            output[0][0] = acceleration[0];
-            output[1][0] = acceleration[1];
+            output[0][0] = acceleration[0]; // m_platformR
+            output[1][0] = acceleration[1]; // m_platformR
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -3619,18 +3619,18 @@ impl ThreeLegPoint {
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
-            output[0][10] = -minus_g1_vx_leg1;
+            output[0][10] = -minus_g1_vx_leg1; // off_1_leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
-            output[1][10] = g1_vy_leg1;
+            output[1][10] = g1_vy_leg1; // off_1_leg1
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][4] = g1_vy_leg1 * rate_1_leg1;
-            output[0][7] = -::overact::math::wide::signed(
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -3643,41 +3643,41 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
-            output[0][16] = g2_vx_leg1 * a_on_f1_leg1
+            output[0][16] = g2_vx_leg1 * a_on_f1_leg1 // my_2_leg1
                 - minus_g1_vx_leg1 * a_on_f2_leg1;
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][19] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1);
+            output[0][19] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
-            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-            output[0][13] = -(g2_vx_leg1 * minus_rate_dot_2_leg1);
-            output[1][16] = g1_vy_leg1 * a_on_f2_leg1
+            output[0][13] = -(g2_vx_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][16] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * a_on_f1_leg1;
-            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][19] = -::overact::math::wide::signed(
+            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
                 minus_gq2_vy_leg1,
                 qd_2_leg1,
             );
-            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
             let k_leg2 = INV_L_1 / s2_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][11] = g1_vx_leg2;
+            output[0][11] = g1_vx_leg2; // off_1_leg2
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-            output[1][11] = -minus_g1_vy_leg2;
+            output[1][11] = -minus_g1_vy_leg2; // off_1_leg2
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[0][5] = g1_vx_leg2 * rate_1_leg2;
-            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2);
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][8] = -::overact::math::wide::signed(
+            output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = -::overact::math::wide::signed( // fs_1_leg2
                 minus_g1_vy_leg2,
                 rate_1_leg2,
             );
@@ -3693,42 +3693,42 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2;
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][20] = -::overact::math::wide::signed(
+            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_gq2_vx_leg2,
                 qd_2_leg2,
             );
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2);
+            output[0][2] = -(g1_vx_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
                 - minus_g1_vy_leg2 * a_on_f2_leg2;
-            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+            output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][20] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2);
-            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2);
+            output[1][20] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
             let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
             let k_leg3 = INV_L_1 / s2_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][12] = g1_vx_leg3;
+            output[0][12] = g1_vx_leg3; // off_1_leg3
             let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][12] = -minus_g1_vy_leg3;
+            output[1][12] = -minus_g1_vy_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-            output[0][6] = g1_vx_leg3 * rate_1_leg3;
-            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][9] = -::overact::math::wide::signed(
+            output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -3746,26 +3746,26 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 - g1_vx_leg3 * a_on_f2_leg3;
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = -::overact::math::wide::signed(
+            output[0][21] = -::overact::math::wide::signed( // fs_2_leg3
                 minus_gq2_vx_leg3,
                 qd_2_leg3,
             );
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
-            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
-            output[0][15] = -(minus_g2_vx_leg3 * rate_dot_2_leg3);
-            output[1][18] = minus_g1_vy_leg3 * a_on_f2_leg3
+            output[0][15] = -(minus_g2_vx_leg3 * rate_dot_2_leg3); // zz_2_leg3R
+            output[1][18] = minus_g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
                 - g2_vy_leg3 * a_on_f1_leg3;
-            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            output[1][21] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3);
-            output[1][15] = g2_vy_leg3 * rate_dot_2_leg3;
+            output[1][21] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
+            output[1][15] = g2_vy_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -3799,10 +3799,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3882,7 +3882,7 @@ impl ThreeLegPoint {
                 + INV_TWICE_L_1 * l2_y_leg2;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            output[0][11] = g1_vx_leg2;
+            output[0][11] = g1_vx_leg2; // off_1_leg2
             let k_leg1 = 1.0 / det_leg1;
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -3890,11 +3890,11 @@ impl ThreeLegPoint {
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            output[0][10] = -minus_g1_vx_leg1;
+            output[0][10] = -minus_g1_vx_leg1; // off_1_leg1
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            output[0][12] = g1_vx_leg3;
+            output[0][12] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
             ::overact::guard::platform(
@@ -3907,15 +3907,15 @@ impl ThreeLegPoint {
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-            output[1][10] = g1_vy_leg1;
+            output[1][10] = g1_vy_leg1; // off_1_leg1
             let t3_leg3 = y_plus_half_radius * INV_L_1;
             let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg3;
             let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
-            output[1][11] = g1_vy_leg2;
+            output[1][11] = g1_vy_leg2; // off_1_leg2
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-            output[1][12] = -minus_g1_vy_leg3;
+            output[1][12] = -minus_g1_vy_leg3; // off_1_leg3
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
@@ -3936,23 +3936,23 @@ impl ThreeLegPoint {
                 / pivot_2;
             let vx = t1 / s_1_1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1);
-            output[1][4] = g1_vy_leg1 * rate_1_leg1;
-            output[0][7] = -::overact::math::wide::signed(
+            output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
+            output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
+            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
                 minus_g1_vx_leg1,
                 rate_1_leg1,
             );
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1);
+            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
-            output[0][5] = g1_vx_leg2 * rate_1_leg2;
-            output[1][5] = g1_vy_leg2 * rate_1_leg2;
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2);
-            output[1][8] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2);
+            output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
+            output[1][5] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
+            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-            output[0][6] = g1_vx_leg3 * rate_1_leg3;
-            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3);
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3);
-            output[1][9] = -::overact::math::wide::signed(
+            output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
                 minus_g1_vy_leg3,
                 rate_1_leg3,
             );
@@ -3962,8 +3962,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
-            output[1][19] = d_x_leg1 * t1_leg1;
-            output[0][19] = pose[0] * t1_leg1;
+            output[1][19] = d_x_leg1 * t1_leg1; // fs_2_leg1
+            output[0][19] = pose[0] * t1_leg1; // fs_2_leg1
             // --- leg2
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let t3_leg2 = t1_leg2 * INV_L_1;
@@ -3972,8 +3972,8 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
-            output[0][20] = -(t3_leg2 * t4_leg2);
-            output[1][20] = -(t3_leg3 * t4_leg2);
+            output[0][20] = -(t3_leg2 * t4_leg2); // fs_2_leg2
+            output[1][20] = -(t3_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
@@ -3983,8 +3983,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
-            output[0][21] = -(t4_leg3 * t5_leg3);
-            output[1][21] = -(t3_leg3 * t5_leg3);
+            output[0][21] = -(t4_leg3 * t5_leg3); // fs_2_leg3
+            output[1][21] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
@@ -4023,16 +4023,16 @@ impl ThreeLegPoint {
                 + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 + minus_l_2_1 * t2) / pivot_2;
-            output[1][0] = dvy;
+            output[1][0] = dvy; // m_platformR
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
-            output[0][0] = dvx;
+            output[0][0] = dvx; // m_platformR
             // --- leg2
             let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
             let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
@@ -4040,7 +4040,7 @@ impl ThreeLegPoint {
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3;
             // --- leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
@@ -4048,39 +4048,39 @@ impl ThreeLegPoint {
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+            output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
-            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let rate_dot_1_leg2 = k_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-            output[0][2] = g1_vx_leg2 * rate_dot_1_leg2;
+            output[0][2] = g1_vx_leg2 * rate_dot_1_leg2; // zz_1_leg2R
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1;
-            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1);
-            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+            output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
+            output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
                 - g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[1][2] = g1_vy_leg2 * rate_dot_1_leg2;
-            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2);
-            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+            output[1][2] = g1_vy_leg2 * rate_dot_1_leg2; // zz_1_leg2R
+            output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
-            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3);
-            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
+            output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -4110,10 +4110,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4139,16 +4139,16 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][2] = 0.0;
-            output[0][5] = 0.0;
-            output[0][8] = 0.0;
-            output[0][10] = 1.0;
-            output[0][11] = 0.0;
-            output[1][1] = 0.0;
-            output[1][4] = 0.0;
-            output[1][7] = 0.0;
-            output[1][10] = 0.0;
-            output[1][11] = 1.0;
+            output[0][2] = 0.0; // zz_1_leg2R
+            output[0][5] = 0.0; // fv_1_leg2
+            output[0][8] = 0.0; // fs_1_leg2
+            output[0][10] = 1.0; // off_1_leg1
+            output[0][11] = 0.0; // off_1_leg2
+            output[1][1] = 0.0; // zz_1_leg1R
+            output[1][4] = 0.0; // fv_1_leg1
+            output[1][7] = 0.0; // fs_1_leg1
+            output[1][10] = 0.0; // off_1_leg1
+            output[1][11] = 1.0; // off_1_leg2
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -4211,20 +4211,20 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][4] = rate_1_leg1;
+            output[0][4] = rate_1_leg1; // fv_1_leg1
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0] // m_platformR
                 + minus_vy_by_a2 * acceleration[1]);
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][5] = rate_1_leg2;
+            output[1][5] = rate_1_leg2; // fv_1_leg2
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0] // m_platformR
                 + minus_vy_by_a1 * acceleration[1]);
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -4242,24 +4242,24 @@ impl ThreeLegPoint {
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2;
+            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
+            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
-            output[0][20] = -::overact::math::wide::signed(
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_g2_a1_leg2,
                 qd_2_leg2,
             );
@@ -4277,23 +4277,23 @@ impl ThreeLegPoint {
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed(
+            output[0][19] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
             );
-            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
-            output[1][19] = -::overact::math::wide::signed(
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
+            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
@@ -4311,15 +4311,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][12] = g1_a1_leg3;
+            output[0][12] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][12] = g1_a2_leg3;
-            output[1][6] = g1_a2_leg3 * rate_1_leg3;
-            output[0][6] = g1_a1_leg3 * rate_1_leg3;
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][12] = g1_a2_leg3; // off_1_leg3
+            output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -4336,15 +4336,15 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed(
+            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[0][21] = ::overact::math::wide::signed(
+            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
@@ -4352,13 +4352,13 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
-            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
-            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -4391,10 +4391,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -4414,16 +4414,16 @@ impl ThreeLegPoint {
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
             const L_1: ::core::primitive::f64 = 0.24;
-            output[0][2] = 0.0;
-            output[0][5] = 0.0;
-            output[0][8] = 0.0;
-            output[0][10] = 1.0;
-            output[0][11] = 0.0;
-            output[1][1] = 0.0;
-            output[1][4] = 0.0;
-            output[1][7] = 0.0;
-            output[1][10] = 0.0;
-            output[1][11] = 1.0;
+            output[0][2] = 0.0; // zz_1_leg2R
+            output[0][5] = 0.0; // fv_1_leg2
+            output[0][8] = 0.0; // fs_1_leg2
+            output[0][10] = 1.0; // off_1_leg1
+            output[0][11] = 0.0; // off_1_leg2
+            output[1][1] = 0.0; // zz_1_leg1R
+            output[1][4] = 0.0; // fv_1_leg1
+            output[1][7] = 0.0; // fs_1_leg1
+            output[1][10] = 0.0; // off_1_leg1
+            output[1][11] = 1.0; // off_1_leg2
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s1_leg2, c1_leg2), (s1_leg1, c1_leg1), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
@@ -4454,20 +4454,20 @@ impl ThreeLegPoint {
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            output[0][4] = rate_1_leg1;
+            output[0][4] = rate_1_leg1; // fv_1_leg1
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0] // m_platformR
                 + minus_vy_by_a2 * acceleration[1]);
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0] // m_platformR
                 + minus_vy_by_a1 * acceleration[1]);
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-            output[1][5] = rate_1_leg2;
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][5] = rate_1_leg2; // fv_1_leg2
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
@@ -4479,25 +4479,25 @@ impl ThreeLegPoint {
             let v2_by_1_y_leg1 = L_1 * c2_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
             let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1
                 - g2_vx_leg1 * minus_vx_by_a1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + L_1 * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][19] = ::overact::math::wide::signed(
+            output[0][19] = ::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 qd_2_leg1,
             );
-            output[1][16] = g2_a2_leg1 * a_on_f1_leg1;
-            output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1);
+            output[1][16] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
+            output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -4512,25 +4512,25 @@ impl ThreeLegPoint {
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2;
+            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
                 - g2_vy_leg2 * minus_vy_by_a1;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = -(g2_a1_leg2 * minus_rate_dot_2_leg2);
+            output[0][14] = -(g2_a1_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
+            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            output[0][17] = g2_a1_leg2 * a_on_f1_leg2;
-            output[0][20] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2);
+            output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
+            output[0][20] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -4541,15 +4541,15 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][12] = g1_a1_leg3;
+            output[0][12] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][12] = g1_a2_leg3;
-            output[1][6] = g1_a2_leg3 * rate_1_leg3;
-            output[0][6] = g1_a1_leg3 * rate_1_leg3;
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][12] = g1_a2_leg3; // off_1_leg3
+            output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -4564,28 +4564,28 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a1;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed(
+            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[0][21] = ::overact::math::wide::signed(
+            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
             let v2_by_1_y_leg3 = L_1 * c2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
-            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
-            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
-            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -4619,10 +4619,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output`, which holds no result after an error.
+    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4657,16 +4657,16 @@ impl ThreeLegPoint {
             const RADIUS: ::core::primitive::f64 = 0.35;
             /// 2 l_1²
             const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-            output[0][2] = 0.0;
-            output[0][5] = 0.0;
-            output[0][8] = 0.0;
-            output[0][10] = 1.0;
-            output[0][11] = 0.0;
-            output[1][1] = 0.0;
-            output[1][4] = 0.0;
-            output[1][7] = 0.0;
-            output[1][10] = 0.0;
-            output[1][11] = 1.0;
+            output[0][2] = 0.0; // zz_1_leg2R
+            output[0][5] = 0.0; // fv_1_leg2
+            output[0][8] = 0.0; // fs_1_leg2
+            output[0][10] = 1.0; // off_1_leg1
+            output[0][11] = 0.0; // off_1_leg2
+            output[1][1] = 0.0; // zz_1_leg1R
+            output[1][4] = 0.0; // fv_1_leg1
+            output[1][7] = 0.0; // fs_1_leg1
+            output[1][10] = 0.0; // off_1_leg1
+            output[1][11] = 1.0; // off_1_leg2
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -4769,39 +4769,39 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
             let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-            output[0][4] = rate_1_leg1;
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1);
+            output[0][4] = rate_1_leg1; // fv_1_leg1
+            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
-            output[1][5] = rate_1_leg2;
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2);
+            output[1][5] = rate_1_leg2; // fv_1_leg2
+            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1
                 - g1_vx_leg3 * minus_vx_by_a1;
-            output[0][12] = g1_a1_leg3;
+            output[0][12] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
-            output[0][6] = g1_a1_leg3 * rate_1_leg3;
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3);
+            output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
-            output[1][12] = g1_a2_leg3;
-            output[1][6] = g1_a2_leg3 * rate_1_leg3;
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3);
+            output[1][12] = g1_a2_leg3; // off_1_leg3
+            output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed(
+            output[0][19] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
             );
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][19] = -::overact::math::wide::signed(
+            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
                 g2_a2_leg1,
                 minus_qd_2_leg1,
             );
@@ -4867,22 +4867,22 @@ impl ThreeLegPoint {
                 + bias_a_on_f2_leg2;
             let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
                 - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-            output[0][1] = -minus_rate_dot_1_leg1;
+            output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1);
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
@@ -4890,44 +4890,44 @@ impl ThreeLegPoint {
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
                 - minus_bias_a_on_f2_leg3;
-            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3);
-            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy);
-            output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy);
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy); // m_platformR
+            output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy); // m_platformR
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2;
+            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3;
-            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3);
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = ::overact::math::wide::signed(
+            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             );
-            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3;
-            output[1][21] = ::overact::math::wide::signed(
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
+            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             );
-            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3;
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1);
-            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1;
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2);
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
+            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
             );
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2);
-            output[0][20] = -::overact::math::wide::signed(
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
                 minus_g2_a1_leg2,
                 qd_2_leg2,
             );

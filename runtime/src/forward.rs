@@ -7,7 +7,7 @@
 //! All of it may be inlined: sizes are constants in generated code, and loops of three or four turns cost
 //! more than what they do where the compiler does not know them.
 
-use crate::{ActuatorGroup, Error, float::Float};
+use crate::{ActuatorGroup, Error, float::Float, guard};
 use overact_core::limits::DOUBLE;
 
 /// Largest number of Gauss-Newton steps.
@@ -262,31 +262,89 @@ pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
     let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else {
         return;
     };
-    let angle = (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
-    let half = T::of(0.5);
-    let (sine, cosine) = (half * angle).sin_cos();
-    // sin(a/2)/a tends to 1/2.
-    let scale = match angle > T::of(1e-12) {
-        true => sine / angle,
-        false => half,
-    };
-    let (a, b, c, d) = (cosine, scale * turn[0], scale * turn[1], scale * turn[2]);
-    let product = [
+    let square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+    let (scale, a) = half_turn(square);
+    let (b, c, d) = (scale * turn[0], scale * turn[1], scale * turn[2]);
+    (*w, *x, *y, *z) = (
         a * *w - b * *x - c * *y - d * *z,
         a * *x + b * *w + c * *z - d * *y,
         a * *y - b * *z + c * *w + d * *x,
         a * *z + b * *y - c * *x + d * *w,
-    ];
-    let norm = product.iter().map(|q| *q * *q).sum::<T>().sqrt();
-    [*w, *x, *y, *z] = product.map(|q| q / norm);
+    );
+    // No number is left without one: a quaternion of zeros is refused by whatever takes the pose.
+    let _ = guard::normalise(pose, "pose");
+}
+
+/// Squares of angles (rad²) up to which four terms of a series have all digits: the first one left out is 2 · 10⁻¹⁷.
+const SMALL_TURN: f64 = 1.0 / 256.0;
+
+/// sin(a/2)/a and cos(a/2) of an angle a (rad) whose square is known. Steps of an iteration turn by little, and a series
+/// in a² waits for no root and no quotient.
+#[inline]
+fn half_turn<T: Float>(square: T) -> (T, T) {
+    if square < T::of(SMALL_TURN) {
+        let [first, second, third, fourth] =
+            [1.0 / 2.0, 1.0 / 48.0, 1.0 / 3840.0, 1.0 / 645_120.0].map(T::of);
+        let scale = first - square * (second - square * (third - square * fourth));
+        let [first, second, third, fourth] =
+            [1.0, 1.0 / 8.0, 1.0 / 384.0, 1.0 / 46_080.0].map(T::of);
+        return (
+            scale,
+            first - square * (second - square * (third - square * fourth)),
+        );
+    }
+    let angle = square.sqrt();
+    let (sine, cosine) = (T::of(0.5) * angle).sin_cos();
+    (sine / angle, cosine)
 }
 
 #[cfg(test)]
 mod tests {
     use super::{
-        Error, Measured, Workspace, displace, from_closed_form, gauss_newton,
-        solve_positive_definite, steps,
+        Error, Measured, Workspace, displace, displace_quaternion, from_closed_form, gauss_newton,
+        half_turn, solve_positive_definite, steps,
     };
+
+    #[test]
+    fn half_turns_by_series_and_by_sines_are_the_same() {
+        for angle in [
+            0.0, 1e-200, 1e-9, 1e-3, 0.03, 0.0624, 0.0626, 0.5, 3.0, 7.0_f64,
+        ] {
+            let (scale, cosine) = half_turn(angle * angle);
+            let half = 0.5 * angle;
+            let wanted = if angle > 0.0 { half.sin() / angle } else { 0.5 };
+            assert!((scale - wanted).abs() < 2e-16, "{angle}: {scale} {wanted}");
+            assert!((cosine - half.cos()).abs() < 3e-16, "{angle}: {cosine}");
+            let (single, _) = half_turn((angle * angle) as f32);
+            assert!(
+                (f64::from(single) - wanted).abs() < 1e-7,
+                "{angle}: {single}"
+            );
+        }
+        let (scale, cosine) = half_turn(f64::NAN);
+        assert!(scale.is_nan() && cosine.is_nan());
+    }
+
+    #[test]
+    fn a_turn_in_many_small_steps_is_the_whole_turn() {
+        let axis = [0.48, -0.6, 0.64];
+        for (count, angle) in [(1, 2.0), (100, 0.02), (1000, 0.002), (2, 1.0_f64)] {
+            let mut pose = [0.0, 1.0, 0.0, 0.0, 0.0];
+            for _ in 0..count {
+                displace_quaternion(
+                    &mut pose,
+                    &[0.5, angle * axis[0], angle * axis[1], angle * axis[2]],
+                );
+            }
+            let wanted = axis.map(|a| a * 1.0_f64.sin());
+            assert!((pose[1] - 1.0_f64.cos()).abs() < 1e-14, "{pose:?}");
+            for (found, wanted) in pose[2..].iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-14, "{pose:?}");
+            }
+            let length: f64 = pose[1..].iter().map(|q| q * q).sum();
+            assert!((length - 1.0).abs() < 1e-15, "{length}");
+        }
+    }
 
     #[test]
     fn a_positive_definite_system_is_solved() {

@@ -17,6 +17,8 @@ use overact_core::Function;
 const DISPLACE: &str = include_str!("text/displace.c");
 const DISPLACE_ASIDE: &str = include_str!("text/displace_aside.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
+/// What both displacements of poses with a quaternion call.
+const TURN: &str = include_str!("text/turn.c");
 const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
 /// The loop around the steps that `rob_FIND` finds.
 const STEPS: &str = include_str!("text/steps.c");
@@ -241,7 +243,19 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     };
     let tables = aside.map_or_else(String::new, |own| coordinates(&own));
     let (fit, steps) = fitting(model);
-    let helpers = text(&[&tables, displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
+    let turn = if has_quaternion(model) { TURN } else { "" };
+    let between = if has_quaternion(model) { "\n" } else { "" };
+    let helpers = text(&[
+        &tables,
+        turn,
+        between,
+        displace,
+        "\n",
+        GAUSS_NEWTON,
+        "\n",
+        &steps,
+        "\n",
+    ]);
     let found = found.replace("rob_FIT", fit);
     let body = text(&[FORWARD_CHECKS, start, &found, FORWARD_END]);
     format!("{helpers}{head}{body}")

@@ -25,6 +25,8 @@ pub struct Item {
     pub sections: Sections,
     /// All names that its body assigns.
     pub names: Vec<String>,
+    /// Whether it comes twice, once for a matrix that is handed in.
+    pub is_placed: bool,
 }
 
 /// The function as an item of an `impl` block.
@@ -36,6 +38,7 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             tokens: super::inverse::item(model),
             sections: Sections::none(&function.name),
             names: Vec::new(),
+            is_placed: outline.is_placed(),
         };
     }
     if let Some(twin) = outline.twin {
@@ -49,19 +52,22 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             ),
             sections: Sections::none(&function.name),
             names: Vec::new(),
+            is_placed: outline.is_placed(),
         };
     }
     let Some(lanes) = &function.lanes else {
         return straight(model, function, &outline, TokenStream::new());
     };
     let name = body_name(function, &outline);
-    let written = lanes::write(model, function, lanes, &name);
+    let mut written = lanes::write(model, function, lanes, &name);
+    written.sections.columns = columns(model, function, outline.columns);
     let Work { item, value } = Work::new(function, lanes, &written);
     if lanes.pays == Pays::Always {
         return Item {
             tokens: around(model, function, &outline, &item, &value),
             sections: written.sections,
             names: written.names,
+            is_placed: outline.is_placed(),
         };
     }
     let before = quote! {
@@ -120,9 +126,26 @@ fn straight(
         sections: Sections {
             function: body_name(function, outline),
             starts: body.sections,
+            columns: columns(model, function, outline.columns),
         },
         names: body.names,
+        is_placed: outline.is_placed(),
     }
+}
+
+/// Names of the columns, as the table of parameters has them.
+fn columns(model: &RobotModel, function: &CompiledFunction, table: Option<Table>) -> Vec<String> {
+    if table == Some(Table::BaseParameters) {
+        return model
+            .base
+            .iter()
+            .map(|base| model.base_name(base))
+            .collect();
+    }
+    let columns = model.columns_of(function.computes).iter();
+    columns
+        .map(|&column| model.parameter_name(column))
+        .collect()
 }
 
 /// Inputs as values, for what is written in between might stand in their place as far as the compiler knows: inside a
@@ -193,18 +216,23 @@ fn around(
         };
     }
     let into = ident(&body_name(function, outline));
-    let written =
-        format!(" [`Self::{name}`], written into `output`, which holds no result after an error.");
+    let written = [
+        format!(
+            " [`Self::{name}`], whose numbers are written into `output` one by one, each as soon as it is known."
+        ),
+        String::new(),
+        " # Errors".to_owned(),
+        format!(
+            " Those of [`Self::{name}`]; what stands in `output` is no result then, for some of it may have been written."
+        ),
+    ];
     quote! {
         #(#[doc = #documentation])*
         pub fn #name(#(#names: &#kinds),*) -> ::core::result::Result<#output, ::overact::Error> {
             ::overact::filled(|output| Self::#into(#(#names,)* output))
         }
 
-        #[doc = #written]
-        #[doc = ""]
-        #[doc = " # Errors"]
-        #[doc = " The same."]
+        #(#[doc = #written])*
         pub fn #into(#(#names: &#kinds,)* output: &mut #output) -> ::core::result::Result<(), ::overact::Error> {
             #body
         }

@@ -11,6 +11,8 @@ pub struct Sections {
     pub function: String,
     /// For every section the first name that is assigned in it, and its heading.
     pub starts: Vec<(String, String)>,
+    /// What the columns of a matrix stand for that is written number by number.
+    pub columns: Vec<String>,
 }
 
 impl Sections {
@@ -20,16 +22,19 @@ impl Sections {
         Self {
             function: function.to_owned(),
             starts: Vec::new(),
+            columns: Vec::new(),
         }
     }
 }
 
-/// Writes the headings of sections into formatted code; functions stand in the order of `sections`.
+/// Writes the headings of sections into formatted code, and names of columns behind their numbers; functions stand in the
+/// order of `sections`.
 #[must_use]
-pub(crate) fn with_headings(code: &str, sections: &[Sections]) -> String {
+pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
     let mut out = String::with_capacity(code.len());
     let mut left = sections.iter();
     let mut starts = [].iter().peekable();
+    let mut columns: &[String] = &[];
     for line in code.lines() {
         let text = line.trim_start();
         let declared = text.strip_prefix("pub fn ");
@@ -37,15 +42,28 @@ pub(crate) fn with_headings(code: &str, sections: &[Sections]) -> String {
             let own = left.clone().position(|s| s.function == name);
             if let Some(found) = own.and_then(|at| left.nth(at)) {
                 starts = found.starts.iter().peekable();
+                columns = &found.columns;
             }
         }
         let indent = &line[..line.len() - text.len()];
         while let Some((_, heading)) = starts.next_if(|(name, _)| assigns(text, name)) {
             push_line(&mut out, &format!("{indent}// --- {heading}"));
         }
-        push_line(&mut out, line);
+        match unnamed(text, columns) {
+            Some(name) => push_line(&mut out, &format!("{line} // {name}")),
+            None => push_line(&mut out, line),
+        }
     }
     out
+}
+
+/// The name of the column whose number a statement writes, unless the value has it in its own: of
+/// `output[0][9] = x * y;` that of column 9.
+fn unnamed<'c>(statement: &str, columns: &'c [String]) -> Option<&'c str> {
+    let (place, value) = statement.strip_prefix("output[")?.split_once("] = ")?;
+    let (_row, column) = place.split_once("][")?;
+    let name = columns.get(column.parse::<usize>().ok()?)?;
+    (!value.starts_with(&format!("{name}_on_"))).then_some(name)
 }
 
 /// Whether a statement begins by assigning this name, mutable or not, or this name beside another one.
@@ -147,6 +165,32 @@ fn is_balanced(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn numbers_of_a_matrix_have_the_names_of_their_columns() {
+        let columns = ["m1".to_owned(), "fv_1".to_owned()];
+        let statements = [
+            ("output[0][1] = -x * y;", Some("fv_1")),
+            ("output[2][0] = f(", Some("m1")),
+            ("output[0][1] = fv_1_on_vx;", None),
+            ("output[0][2] = x;", None),
+            ("output[0][0..2].fill(x);", None),
+            ("output[0] = x;", None),
+            ("let a = output[0][1];", None),
+        ];
+        for (statement, wanted) in statements {
+            assert_eq!(super::unnamed(statement, &columns), wanted, "{statement}");
+        }
+        let sections = super::Sections {
+            function: "g_into".to_owned(),
+            starts: vec![("y".to_owned(), "Rates".to_owned())],
+            columns: columns.to_vec(),
+        };
+        let code = "pub fn g() {\n    output[0][1] = 1.0;\n}\npub fn g_into(x: f64) {\n    let y = x;\n    output[0][1] = y;\n}\n";
+        let wanted = "pub fn g() {\n    output[0][1] = 1.0;\n}\npub fn g_into(x: f64) {\n    // --- Rates\n    let y = x;\n    \
+                      output[0][1] = y; // fv_1\n}\n";
+        assert_eq!(super::with_comments(code, &[sections]), wanted);
+    }
+
     #[test]
     fn closures_begin_on_the_line_of_their_call() {
         let code = "fn f() {\n    a::widest(\n        #[inline(always)]\n        || {\n            \

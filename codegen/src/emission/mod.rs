@@ -77,7 +77,8 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     documentation.extend(source(&model.mechanism.source));
     documentation.push(String::new());
     documentation.extend(operations::of_robot(model));
-    documentation.extend(written_into(model));
+    let is_placed = functions.iter().any(|function| function.is_placed);
+    documentation.extend(is_placed.then(written_into).into_iter().flatten());
     let legend = legend::lines(&Labels::of_robot(model), &names.collect());
     if !legend.is_empty() {
         documentation.push(String::new());
@@ -170,15 +171,11 @@ fn is_short(model: &RobotModel) -> Option<&'static str> {
 }
 
 /// What is said of the functions that come twice, if there are any.
-fn written_into(model: &RobotModel) -> Vec<String> {
-    let mut functions = model.functions.iter();
-    match functions.any(|function| function.computes.columns().is_some()) {
-        true => vec![
-            String::new(),
-            " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.".to_owned(),
-        ],
-        false => Vec::new(),
-    }
+fn written_into() -> [String; 2] {
+    [
+        String::new(),
+        " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.".to_owned(),
+    ]
 }
 
 /// A summary as a line of documentation.
@@ -205,7 +202,7 @@ pub fn file(model: &RobotModel, label: &str) -> String {
     let (tokens, sections) = module_and_sections(model);
     // The tokens are our own: that they parse is proved by every test that compiles them.
     let code = match syn::parse2(tokens.clone()) {
-        Ok(file) => layout::with_headings(
+        Ok(file) => layout::with_comments(
             &layout::pack_arrays(&layout::join_closures(&prettyplease::unparse(&file))),
             &sections,
         ),

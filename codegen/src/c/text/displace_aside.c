@@ -1,32 +1,11 @@
-/* Moves a pose by six components of a velocity: the position, and the quaternion (w, x, y, z), which is multiplied
- * from the left by the exponential of the rotation vector that the last three are. */
+/* Moves a pose by six components of a velocity: the position, and the orientation, whose rotation vector the last three
+ * are. */
 static void rob_displace_freely(double *pose, const double *step)
 {
-    const double *const turn = &step[3];
-    double *const q = &pose[3];
-    const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
-    /* sin(a/2)/a tends to 1/2. */
-    const double scale = (angle > 1e-12) ? (sin(0.5 * angle) / angle) : 0.5;
-    const double a = cos(0.5 * angle);
-    const double b = scale * turn[0];
-    const double c = scale * turn[1];
-    const double d = scale * turn[2];
-    double product[4];
-    double sum = 0.0;
     for (int i = 0; i < 3; i++) {
         pose[i] += step[i];
     }
-    product[0] = a * q[0] - b * q[1] - c * q[2] - d * q[3];
-    product[1] = a * q[1] + b * q[0] + c * q[3] - d * q[2];
-    product[2] = a * q[2] - b * q[3] + c * q[0] + d * q[1];
-    product[3] = a * q[3] + b * q[2] - c * q[1] + d * q[0];
-    for (int i = 0; i < 4; i++) {
-        sum += product[i] * product[i];
-    }
-    sum = sqrt(sum);
-    for (int i = 0; i < 4; i++) {
-        q[i] = product[i] / sum;
-    }
+    rob_turn(pose, &step[3]);
 }
 
 /* Solves a square system in place by elimination with row pivoting; 0 where it is singular. */

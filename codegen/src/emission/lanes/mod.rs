@@ -102,6 +102,7 @@ pub(super) fn write(
         sections: Sections {
             function: name.to_owned(),
             starts: headings(lanes, shared, own),
+            columns: Vec::new(),
         },
         names: body.names,
     }
