@@ -180,18 +180,17 @@ impl RobotModel {
             whole.once.additions += self.mechanism.pose_len();
             whole.once.guards += self.mechanism.pose_len();
         }
-        // A platform that moves aside is displaced by all six components.
-        let moved = if self.mechanism.is_parasitic() { 6 } else { r };
-        let mut step = WholeCost::from(displacement(moved, self.has_quaternion()));
+        let mut step = WholeCost::from(Cost::default());
         // The bounds of the next step.
         step.once.multiplications += 3;
         if self.mechanism.is_parasitic() {
-            // One step back onto the closures; where steps are short it is enough.
-            let blocked = 6 - r;
-            step.call(WholeCost::from(elimination(blocked)));
-            step.call(WholeCost::from(displacement(moved, true)));
-            step.call(self.of(Function::BlockedError, MotionInput::Pose));
-            step.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
+            // The start is looked at. A short step leaves the closures once, and is looked at when it is back.
+            let turn = self.turn_aside();
+            whole.call(turn.clone());
+            step.call(turn.clone());
+            step.call(turn);
+        } else {
+            step.once += displacement(r, self.has_quaternion());
         }
         match self.function(Function::PoseStep, MotionInput::Pose) {
             Some(at_once) => step.call(self.cost(at_once)),
@@ -203,6 +202,15 @@ impl RobotModel {
         }
         whole.iterate(FORWARD, step);
         whole
+    }
+
+    /// A turn of `aside::displace`: all six components displace the start, and the dependent ones are corrected.
+    fn turn_aside(&self) -> WholeCost {
+        let mut turn = WholeCost::from(displacement(6, true));
+        turn.once += elimination(6 - self.mechanism.dof());
+        turn.call(self.of(Function::BlockedError, MotionInput::Pose));
+        turn.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
+        turn
     }
 
     /// `joints` by Newton's method, where the way from home is gone in one step.

@@ -60,7 +60,7 @@
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
 ///
 /// # Names
 ///
@@ -2123,10 +2123,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2773,8 +2773,8 @@ impl DualV {
         let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         output[0][5] = zz_2_leg1_on_vx;
         let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-        output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
-            - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+        output[0][6] = inv_l_ab_a_end_x_leg1
+            - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
         // --- leg2
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
@@ -2791,19 +2791,19 @@ impl DualV {
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
         output[0][20] = zz_2_leg2_on_vx;
-        output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
-            - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+        output[0][21] = inv_l_ab_a_end_x_leg1
+            - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx); // mx_2_leg2
         let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
         output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-        output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + g2_vx_leg2 * a2_x_leg2);
+        output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
         output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
         output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
-        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-            + g2_wz_leg1 * a2_x_leg1);
+        output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
         // --- leg1
         let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
         output[1][0] = zz_1_leg1_on_vy;
@@ -2816,35 +2816,35 @@ impl DualV {
         let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
         output[2][5] = -minus_zz_2_leg1_on_wz; // zz_2_leg1
         let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-        output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
-            - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+        output[1][6] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy); // mx_2_leg1
         output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
         output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
         let r_p_dwz = R_P * acceleration[2];
         let a3_x_leg1 = r_p_dwz - a_x_platform;
         let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-        output[2][6] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg1
-            + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+        output[2][6] = r_p_per_l_ab_a3_x_leg1
+            + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz); // mx_2_leg1
         output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
-        output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + g2_vy_leg2 * a2_x_leg2);
-        output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + minus_g2_wz_leg2 * a2_x_leg2;
+        output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
+        output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
         // --- leg2
         let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
         output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
         output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
         let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
         output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
-        output[2][21] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg2
-            + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+        output[2][21] = r_p_per_l_ab_a3_x_leg1
+            + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz); // mx_2_leg2
         let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         output[1][15] = zz_1_leg2_on_vy;
         output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
         let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
         output[1][20] = zz_2_leg2_on_vy;
-        output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
-            - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+        output[1][21] = inv_l_ab_a_end_y_leg1
+            - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy); // mx_2_leg2
         output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
         output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
         let qd_3_leg2 = twist[2] - rate_2_leg2;
@@ -2878,12 +2878,12 @@ impl DualV {
         output[2][35] = zz_2_leg3_on_wz;
         let a3_x_leg3 = a_x_platform + r_p_dwz;
         let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
-        output[2][36] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg3
-            - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+        output[2][36] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
         let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_wz_leg3 * a2_x_leg3;
+        output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
         // --- leg4
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
@@ -2901,17 +2901,17 @@ impl DualV {
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
         output[2][50] = zz_2_leg4_on_wz;
-        output[2][51] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg4
-            - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+        output[2][51] = r_p_per_l_ab_a3_x_leg3
+            - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
         let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_wz_leg4 * a2_x_leg4);
+        output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
         output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
-        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_vx_leg3 * a2_x_leg3;
-        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_vy_leg3 * a2_x_leg3;
+        output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
+        output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
         let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
         output[0][30] = zz_1_leg3_on_vx;
         output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
@@ -2922,13 +2922,13 @@ impl DualV {
         let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         output[0][35] = zz_2_leg3_on_vx;
         let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-        output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
-            - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+        output[0][36] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
         let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         output[1][35] = zz_2_leg3_on_vy;
         let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-        output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
-            - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+        output[1][36] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
         output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
@@ -2945,10 +2945,10 @@ impl DualV {
         output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
         output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
         output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
-        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_vx_leg4 * a2_x_leg4);
-        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_vy_leg4 * a2_x_leg4);
+        output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
+        output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
         let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
         output[0][45] = zz_1_leg4_on_vx;
         output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
@@ -2957,12 +2957,12 @@ impl DualV {
         output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
         let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
         output[0][50] = zz_2_leg4_on_vx;
-        output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
-            - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+        output[0][51] = inv_l_ab_a_end_x_leg3
+            - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
         let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
         output[1][50] = zz_2_leg4_on_vy;
-        output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
-            - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+        output[1][51] = inv_l_ab_a_end_y_leg3
+            - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
         output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
         output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
@@ -3010,10 +3010,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -3184,20 +3184,20 @@ impl DualV {
             output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
             output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
             output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][3] = -::overact::math::wide::signed( // fs_1_leg1
+            output[2][3] = -::overact::math::wide::signed(
                 minus_g1_wz_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             output[0][17] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][17] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
             output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
             output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
-            output[2][18] = -::overact::math::wide::signed( // fs_1_leg2
+            output[2][18] = -::overact::math::wide::signed(
                 minus_g1_wz_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
@@ -3218,38 +3218,38 @@ impl DualV {
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-            output[0][10] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][10] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-            output[1][10] = ::overact::math::wide::signed( // fs_2_leg1
+            output[1][10] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-            output[2][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[2][10] = -::overact::math::wide::signed(
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
                 + minus_g2_vy_leg2 * v_end_y_leg1;
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2; // fv_2_leg2
-            output[0][25] = ::overact::math::wide::signed( // fs_2_leg2
+            output[0][25] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][25] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
-            output[2][25] = -::overact::math::wide::signed( // fs_2_leg2
+            output[2][25] = -::overact::math::wide::signed(
                 gq2_wz_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -3260,8 +3260,8 @@ impl DualV {
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
-            output[0][7] = g1_vx_leg1 * a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
+            output[0][7] = g1_vx_leg1 * a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a_on_f1_leg1; // my_2_leg1
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
             // --- leg2
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
@@ -3281,8 +3281,8 @@ impl DualV {
                 * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
-            output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
-                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+            output[0][21] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx); // mx_2_leg2
             // --- leg1
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
@@ -3293,15 +3293,15 @@ impl DualV {
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
-            output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
-                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
-            output[0][22] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            output[0][6] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
+            output[0][22] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
-            output[1][7] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
-            output[2][7] = -(minus_g1_wz_leg1 * a_on_f2_leg1 // my_2_leg1
-                + g2_wz_leg1 * minus_a_on_f1_leg1);
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+                + minus_g2_vy_leg1 * minus_a_on_f1_leg1; // my_2_leg1
+            output[2][7] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+                + g2_wz_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
             output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
@@ -3313,61 +3313,61 @@ impl DualV {
             let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = zz_2_leg1_on_vy;
             let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-            output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
-                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+            output[1][6] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy); // mx_2_leg1
             output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
             let inv_r_p_a_x_platform = INV_R_P * a_x_platform;
             let t1_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] - inv_r_p_a_x_platform);
-            output[2][6] = t1_platform // mx_2_leg1
-                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+            output[2][6] = t1_platform
+                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz); // mx_2_leg1
             output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed(
                 minus_g2_vx_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
-            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[1][13] = ::overact::math::wide::signed(
                 minus_g2_vy_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][12] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
             output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
-            output[1][22] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2 // my_2_leg2
-                + g2_wz_leg2 * minus_a_on_f1_leg2);
+            output[1][22] = g1_vy_leg2 * a_on_f2_leg2
+                + minus_g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
+            output[2][22] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+                + g2_wz_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             // --- leg2
             let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
             output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
             output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
             let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
             output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
-            output[2][21] = t1_platform // mx_2_leg2
-                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+            output[2][21] = t1_platform
+                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz); // mx_2_leg2
             let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
             output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
             let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_vy;
-            output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
-                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            output[1][21] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy); // mx_2_leg2
             output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             output[0][27] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][28] = ::overact::math::wide::signed(
                 minus_g2_vx_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[1][27] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
-            output[1][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[1][28] = ::overact::math::wide::signed(
                 minus_g2_vy_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][27] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
             output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
@@ -3394,8 +3394,8 @@ impl DualV {
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (acceleration[2] + inv_r_p_a_x_platform);
             output[2][36] = t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
-            output[2][37] = g1_wz_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            output[2][37] = g1_wz_leg3 * a_on_f2_leg3
+                + minus_g2_wz_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             // --- leg4
             let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
                 + minus_g2_vy_leg4 * v_end_y_leg3;
@@ -3417,13 +3417,13 @@ impl DualV {
             let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_wz;
             output[2][51] = t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
-            output[2][52] = g1_wz_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
+            output[2][52] = g1_wz_leg4 * a_on_f2_leg4
+                + minus_g2_wz_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
-            output[0][37] = g1_vx_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
-            output[1][37] = g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
+            output[0][37] = g1_vx_leg3 * a_on_f2_leg3
+                + minus_g2_vx_leg3 * minus_a_on_f1_leg3; // my_2_leg3
+            output[1][37] = g1_vy_leg3 * a_on_f2_leg3
+                + minus_g2_vy_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
             output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
@@ -3434,48 +3434,48 @@ impl DualV {
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = zz_2_leg3_on_vx;
             let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
-                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = zz_2_leg3_on_vy;
             let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
-                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
             output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-            output[0][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][40] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
-            output[1][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][40] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
                 minus_g2_vx_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[1][43] = ::overact::math::wide::signed(
                 minus_g2_vy_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
             output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
-            output[0][52] = g1_vx_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
-            output[1][52] = g1_vy_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
+            output[0][52] = g1_vx_leg4 * a_on_f2_leg4
+                + minus_g2_vx_leg4 * minus_a_on_f1_leg4; // my_2_leg4
+            output[1][52] = g1_vy_leg4 * a_on_f2_leg4
+                + minus_g2_vy_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
             output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
@@ -3484,41 +3484,41 @@ impl DualV {
             output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
             let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
             let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
-            output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
             output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[0][55] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg4,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[1][55] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg4,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[2][55] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg4,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             output[0][57] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
+            output[0][58] = ::overact::math::wide::signed(
                 minus_g2_vx_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             output[1][57] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
-            output[1][58] = ::overact::math::wide::signed( // fs_3_leg4
+            output[1][58] = ::overact::math::wide::signed(
                 minus_g2_vy_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             output[2][57] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
             output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             ::core::result::Result::Ok(())
@@ -3554,10 +3554,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -3817,27 +3817,27 @@ impl DualV {
             output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
             output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
             output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][3] = -::overact::math::wide::signed( // fs_1_leg1
+            output[2][3] = -::overact::math::wide::signed(
                 minus_g1_wz_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-            output[0][18] = ::overact::math::wide::signed( // fs_1_leg2
+            output[0][18] = ::overact::math::wide::signed(
                 minus_g1_vx_leg2,
                 minus_rate_1_leg2,
-            );
-            output[1][18] = ::overact::math::wide::signed( // fs_1_leg2
+            ); // fs_1_leg2
+            output[1][18] = ::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 minus_rate_1_leg2,
-            );
-            output[2][18] = -::overact::math::wide::signed( // fs_1_leg2
+            ); // fs_1_leg2
+            output[2][18] = -::overact::math::wide::signed(
                 g1_wz_leg2,
                 minus_rate_1_leg2,
-            );
+            ); // fs_1_leg2
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
@@ -3852,36 +3852,36 @@ impl DualV {
             output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = ::overact::math::wide::signed( // fs_1_leg4
+            output[0][48] = ::overact::math::wide::signed(
                 minus_g1_vx_leg4,
                 minus_rate_1_leg4,
-            );
-            output[1][48] = ::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[1][48] = ::overact::math::wide::signed(
                 minus_g1_vy_leg4,
                 minus_rate_1_leg4,
-            );
-            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
                 minus_g1_wz_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[0][10] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][10] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][9] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[1][10] = ::overact::math::wide::signed( // fs_2_leg1
+            output[1][10] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[2][9] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[2][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[2][10] = -::overact::math::wide::signed(
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
@@ -3889,23 +3889,23 @@ impl DualV {
             output[1][24] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
             output[1][25] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             output[2][24] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
-            output[2][25] = -::overact::math::wide::signed( // fs_2_leg2
+            output[2][25] = -::overact::math::wide::signed(
                 minus_gq2_wz_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
             output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][12] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed(
                 minus_g2_vx_leg1,
                 qd_3_leg1,
-            );
-            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
+            ); // fs_3_leg1
+            output[1][13] = ::overact::math::wide::signed(
                 minus_g2_vy_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][27] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
             output[1][27] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
@@ -4020,12 +4020,12 @@ impl DualV {
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_wz;
-            output[2][51] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz);
+            output[2][51] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_wz_leg4 * a2_x_leg4);
+            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             let a_y_platform = c_phi * dvy - s_phi * dvx;
             output[2][61] = a_y_platform; // mx_platform
             // --- leg1
@@ -4044,8 +4044,8 @@ impl DualV {
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-            output[0][6] = inv_l_ab_a_end_x_leg1 // mx_2_leg1
-                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx);
+            output[0][6] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
@@ -4059,21 +4059,21 @@ impl DualV {
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
-            output[0][21] = inv_l_ab_a_end_x_leg1 // mx_2_leg2
-                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx);
+            output[0][21] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx); // mx_2_leg2
             let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * a2_x_leg1;
+            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + g2_vx_leg2 * a2_x_leg2);
+            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
             output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
-            output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vy_leg1 * a2_x_leg1;
-            output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + g2_wz_leg1 * a2_x_leg1);
+            output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+            output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
             // --- leg1
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
@@ -4086,58 +4086,58 @@ impl DualV {
             let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
             output[2][5] = -minus_zz_2_leg1_on_wz; // zz_2_leg1
             let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
-            output[1][6] = inv_l_ab_a_end_y_leg1 // mx_2_leg1
-                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy);
+            output[1][6] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy); // mx_2_leg1
             output[1][8] = L_AB_SQUARED * zz_1_leg1_on_vy; // m_2_leg1
             let r_p_dwz = R_P * dwz;
             let a_x_platform = a3_x_leg3 - r_p_dwz;
             output[2][62] = -a_x_platform; // my_platform
             let a3_x_leg1 = r_p_dwz - a_x_platform;
             let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
-            output[2][6] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg1
-                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz);
+            output[2][6] = r_p_per_l_ab_a3_x_leg1
+                + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz); // mx_2_leg1
             output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
-            output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + g2_vy_leg2 * a2_x_leg2);
-            output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + minus_g2_wz_leg2 * a2_x_leg2;
+            output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
+            output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+                + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
             // --- leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
             output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
             let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_vy;
-            output[1][21] = inv_l_ab_a_end_y_leg1 // mx_2_leg2
-                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy);
+            output[1][21] = inv_l_ab_a_end_y_leg1
+                - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy); // mx_2_leg2
             let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
             output[2][15] = -minus_zz_1_leg2_on_wz; // zz_1_leg2
             output[2][16] = -minus_zz_1_leg2_on_wz; // ia_1_leg2
             let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
             output[2][20] = -minus_zz_2_leg2_on_wz; // zz_2_leg2
-            output[2][21] = r_p_per_l_ab_a3_x_leg1 // mx_2_leg2
-                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz);
+            output[2][21] = r_p_per_l_ab_a3_x_leg1
+                + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz); // mx_2_leg2
             output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
             // --- leg3
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3;
+            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
             let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
             output[0][30] = zz_1_leg3_on_vx;
             output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
-            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3;
-            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3;
+            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
             let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
             output[2][30] = zz_1_leg3_on_wz;
             output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
             let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = zz_2_leg3_on_wz;
-            output[2][36] = r_p_per_l_ab_a3_x_leg3 // mx_2_leg3
-                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz);
+            output[2][36] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
             let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
             output[1][30] = zz_1_leg3_on_vy;
             output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
@@ -4146,48 +4146,48 @@ impl DualV {
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][35] = zz_2_leg3_on_vx;
             let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3 // mx_2_leg3
-                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx);
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][35] = zz_2_leg3_on_vy;
             let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3 // mx_2_leg3
-                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy);
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
             output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[0][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][40] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[1][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][40] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
                 minus_g2_vx_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[1][43] = ::overact::math::wide::signed(
                 minus_g2_vy_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
             output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
-            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_vx_leg4 * a2_x_leg4);
-            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_vy_leg4 * a2_x_leg4);
+            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
+            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
             // --- leg4
             let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
@@ -4197,12 +4197,12 @@ impl DualV {
             output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
             let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3 // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx);
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
             let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
-            output[1][51] = inv_l_ab_a_end_y_leg3 // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy);
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
             output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
@@ -4254,10 +4254,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -4437,15 +4437,15 @@ impl DualV {
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
             let vy_by_a3 = p_x_leg3 * wz_by_a3;
             let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][61] = wz_by_a3 * a_y_platform // mx_platform
+            output[2][61] = wz_by_a3 * a_y_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
             output[0][62] = my_platform_on_q1_leg1;
@@ -4486,8 +4486,8 @@ impl DualV {
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][6] = t2_platform // mx_2_leg1
-                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1); // mx_2_leg1
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
             output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
             output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
@@ -4522,8 +4522,8 @@ impl DualV {
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_q1_leg2;
-            output[1][21] = t4_platform // mx_2_leg2
-                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
+            output[1][21] = t4_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2); // mx_2_leg2
             let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_wz_leg2 * wz_by_a1;
             output[0][26] = g2_a1_leg2; // off_2_leg2
@@ -4535,19 +4535,19 @@ impl DualV {
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][10] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
             output[1][14] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1
             output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
-            output[1][13] = -::overact::math::wide::signed( // fs_3_leg1
+            output[1][13] = -::overact::math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
@@ -4558,39 +4558,39 @@ impl DualV {
             output[0][29] = off_3_leg2_on_q1_leg1;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][28] = ::overact::math::wide::signed(
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][10] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
             output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][25] = ::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][29] = -minus_off_3_leg2_on_q1_leg2; // off_3_leg2
             output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
-            output[1][28] = -::overact::math::wide::signed( // fs_3_leg2
+            output[1][28] = -::overact::math::wide::signed(
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -4617,8 +4617,8 @@ impl DualV {
             let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = zz_2_leg3_on_q1_leg3;
             let t5_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t5_platform // mx_2_leg3
-                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
+            output[2][36] = t5_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3); // mx_2_leg3
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
             output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
@@ -4646,14 +4646,14 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][40] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][40] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
@@ -4661,28 +4661,28 @@ impl DualV {
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
             output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
-            );
-            output[1][43] = -::overact::math::wide::signed( // fs_3_leg3
+            ); // fs_3_leg3
+            output[1][43] = -::overact::math::wide::signed(
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][44] = off_3_leg3_on_q1_leg3;
             output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[2][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             // --- leg4
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -4720,8 +4720,8 @@ impl DualV {
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_q1_leg1;
-            output[0][51] = t6_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+            output[0][51] = t6_platform
+                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1); // mx_2_leg4
             let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
             output[1][49] = g1_a2_leg4; // off_1_leg4
@@ -4732,25 +4732,25 @@ impl DualV {
                 - g2_wz_leg4 * minus_wz_by_a2;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_q1_leg2;
-            output[1][51] = t7_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
+            output[1][51] = t7_platform
+                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2); // mx_2_leg4
             output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
             output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
             output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[0][48] = -::overact::math::wide::signed( // fs_1_leg4
+            output[0][48] = -::overact::math::wide::signed(
                 g1_a1_leg4,
                 minus_rate_1_leg4,
-            );
-            output[1][48] = -::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[1][48] = -::overact::math::wide::signed(
                 g1_a2_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            output[2][52] = -(7.142857142857143 // my_2_leg4
+            output[2][52] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
             let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
             output[2][49] = -minus_g1_a3_leg4; // off_1_leg4
             let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
@@ -4759,20 +4759,20 @@ impl DualV {
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
             let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_q1_leg3;
-            output[2][51] = t5_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
+            output[2][51] = t5_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
             output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * a2_x_leg4;
-            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * a2_x_leg4;
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
             output[0][56] = off_2_leg4_on_q1_leg1;
@@ -4793,30 +4793,30 @@ impl DualV {
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
             output[2][59] = off_3_leg4_on_q1_leg3;
             output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
-            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[0][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
-            );
-            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[1][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
-            );
-            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[2][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
-            );
-            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_2_leg4
+            output[0][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
-            );
-            output[1][58] = -::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg4
+            output[1][58] = -::overact::math::wide::signed(
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
-            );
-            output[2][58] = ::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg4
+            output[2][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -4849,10 +4849,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -4997,15 +4997,15 @@ impl DualV {
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 // mx_platform
-                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][61] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform; // mx_platform
             let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
             let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3 // mx_platform
+            output[2][61] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
                 + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
-                - minus_wz_by_a3 * a_y_platform;
+                - minus_wz_by_a3 * a_y_platform; // mx_platform
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
                 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
             output[0][62] = my_platform_on_q1_leg1;
@@ -5045,8 +5045,8 @@ impl DualV {
             let t2_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t1_platform);
-            output[0][6] = t2_platform // mx_2_leg1
-                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][6] = t2_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1); // mx_2_leg1
             output[0][7] = a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1; // my_2_leg1
             output[1][7] = -(g2_a2_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
@@ -5081,8 +5081,8 @@ impl DualV {
                 - minus_g2_vy_leg2 * vy_by_a2 + g2_wz_leg2 * wz_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][20] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            output[1][21] = t5_platform // mx_2_leg2
-                - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2);
+            output[1][21] = t5_platform
+                - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2); // mx_2_leg2
             let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1
                 - minus_g2_vx_leg2 * vx_by_a1 + g2_wz_leg2 * wz_by_a1;
             output[0][26] = g2_a1_leg2; // off_2_leg2
@@ -5093,71 +5093,71 @@ impl DualV {
             output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][10] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
             output[1][14] = off_3_leg1_on_q1_leg2;
             output[1][12] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
             output[2][12] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
-            output[1][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[1][13] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
-            output[2][13] = -::overact::math::wide::signed( // fs_3_leg1
+            ); // fs_3_leg1
+            output[2][13] = -::overact::math::wide::signed(
                 minus_wz_by_a3,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[1][23] = L_AB_SQUARED * rate_dot_1_leg2; // m_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
-            output[0][25] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][25] = -::overact::math::wide::signed(
                 g2_a1_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
             output[2][27] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][28] = ::overact::math::wide::signed(
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
-            );
-            output[2][28] = -::overact::math::wide::signed( // fs_3_leg2
+            ); // fs_3_leg2
+            output[2][28] = -::overact::math::wide::signed(
                 minus_wz_by_a3,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][10] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
             output[1][24] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
-            output[1][25] = -::overact::math::wide::signed( // fs_2_leg2
+            output[1][25] = -::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let off_3_leg2_on_q1_leg2 = wz_by_a2 - g2_a2_leg2;
             output[1][29] = off_3_leg2_on_q1_leg2;
             output[1][27] = qd_3_leg2 * off_3_leg2_on_q1_leg2; // fv_3_leg2
-            output[1][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[1][28] = ::overact::math::wide::signed(
                 off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -5184,8 +5184,8 @@ impl DualV {
             let minus_zz_2_leg3_on_q1_leg3 = g2_a3_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = -minus_zz_2_leg3_on_q1_leg3; // zz_2_leg3
             let t6_platform = 0.7857142857142857 * my_platform_on_q1_leg3;
-            output[2][36] = -(t6_platform // mx_2_leg3
-                + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3));
+            output[2][36] = -(t6_platform
+                + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3)); // mx_2_leg3
             output[2][37] = a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
@@ -5210,14 +5210,14 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][40] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][40] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
@@ -5225,28 +5225,28 @@ impl DualV {
             let off_3_leg3_on_q1_leg2 = wz_by_a2 - g2_a2_leg3;
             output[1][44] = off_3_leg3_on_q1_leg2;
             output[1][42] = qd_3_leg3 * off_3_leg3_on_q1_leg2; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
-            );
-            output[1][43] = ::overact::math::wide::signed( // fs_3_leg3
+            ); // fs_3_leg3
+            output[1][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
             output[2][41] = off_2_leg3_on_q1_leg3;
             output[2][39] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
-            output[2][40] = -::overact::math::wide::signed( // fs_2_leg3
+            output[2][40] = -::overact::math::wide::signed(
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let minus_off_3_leg3_on_q1_leg3 = g2_a3_leg3 + minus_wz_by_a3;
             output[2][44] = -minus_off_3_leg3_on_q1_leg3; // off_3_leg3
             output[2][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3); // fv_3_leg3
-            output[2][43] = -::overact::math::wide::signed( // fs_3_leg3
+            output[2][43] = -::overact::math::wide::signed(
                 minus_off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
@@ -5282,15 +5282,15 @@ impl DualV {
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
             let minus_zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * minus_rate_dot_2_leg4;
             output[0][50] = -minus_zz_2_leg4_on_q1_leg1; // zz_2_leg4
-            output[0][51] = t7_platform // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1);
+            output[0][51] = t7_platform
+                - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1); // mx_2_leg4
             let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
                 + g1_wz_leg4 * wz_by_a2;
             output[1][49] = g1_a2_leg4; // off_1_leg4
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
-            output[1][52] = g1_a2_leg4 * a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * minus_a_on_f1_leg4;
+            output[1][52] = g1_a2_leg4 * a_on_f2_leg4
+                - g2_a2_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             output[0][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg1; // m_2_leg4
             output[0][47] = g1_a1_leg4 * rate_1_leg4; // fv_1_leg4
             output[1][47] = g1_a2_leg4 * rate_1_leg4; // fv_1_leg4
@@ -5299,15 +5299,15 @@ impl DualV {
             output[2][47] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
             output[0][48] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
             output[1][48] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][48] = -::overact::math::wide::signed( // fs_1_leg4
+            output[2][48] = -::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 rate_1_leg4,
-            );
-            output[0][52] = g1_a1_leg4 * a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * minus_a_on_f1_leg4;
+            ); // fs_1_leg4
+            output[0][52] = g1_a1_leg4 * a_on_f2_leg4
+                - g2_a1_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            output[2][52] = -(minus_g1_a3_leg4 * a_on_f2_leg4 // my_2_leg4
-                + g2_a3_leg4 * minus_a_on_f1_leg4);
+            output[2][52] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+                + g2_a3_leg4 * minus_a_on_f1_leg4); // my_2_leg4
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
             output[0][56] = off_2_leg4_on_q1_leg1;
@@ -5316,28 +5316,28 @@ impl DualV {
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
             output[0][59] = off_3_leg4_on_q1_leg1;
             output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
-            output[0][55] = -::overact::math::wide::signed( // fs_2_leg4
+            output[0][55] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let off_3_leg4_on_q1_leg2 = wz_by_a2 - g2_a2_leg4;
             output[1][59] = off_3_leg4_on_q1_leg2;
             output[1][57] = qd_3_leg4 * off_3_leg4_on_q1_leg2; // fv_3_leg4
             let minus_off_3_leg4_on_q1_leg3 = g2_a3_leg4 + minus_wz_by_a3;
             output[2][59] = -minus_off_3_leg4_on_q1_leg3; // off_3_leg4
             output[2][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3); // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
+            output[0][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
-            );
-            output[1][58] = ::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg4
+            output[1][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
-            );
-            output[2][58] = -::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg4
+            output[2][58] = -::overact::math::wide::signed(
                 minus_off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * rate_dot_1_leg4;
             output[1][45] = zz_1_leg4_on_q1_leg2;
             output[1][46] = zz_1_leg4_on_q1_leg2; // ia_1_leg4
@@ -5346,12 +5346,12 @@ impl DualV {
             output[2][46] = -minus_zz_1_leg4_on_q1_leg3; // ia_1_leg4
             let minus_zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * minus_rate_dot_2_leg4;
             output[1][50] = -minus_zz_2_leg4_on_q1_leg2; // zz_2_leg4
-            output[1][51] = t8_platform // mx_2_leg4
-                - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2);
+            output[1][51] = t8_platform
+                - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2); // mx_2_leg4
             let minus_zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * minus_rate_dot_2_leg4;
             output[2][50] = -minus_zz_2_leg4_on_q1_leg3; // zz_2_leg4
-            output[2][51] = -(t6_platform // mx_2_leg4
-                - L_AB * (minus_zz_1_leg4_on_q1_leg3 + minus_zz_2_leg4_on_q1_leg3));
+            output[2][51] = -(t6_platform
+                - L_AB * (minus_zz_1_leg4_on_q1_leg3 + minus_zz_2_leg4_on_q1_leg3)); // mx_2_leg4
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg2; // m_2_leg4
             output[2][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3); // m_2_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
@@ -5360,14 +5360,14 @@ impl DualV {
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][56] = off_2_leg4_on_q1_leg3;
             output[2][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
-            output[1][55] = -::overact::math::wide::signed( // fs_2_leg4
+            output[1][55] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
-            );
-            output[2][55] = -::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[2][55] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -5401,10 +5401,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -5774,9 +5774,9 @@ impl DualV {
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
-            output[2][52] = -(7.142857142857143 // my_2_leg4
+            output[2][52] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let vy_by_a3 = p_x_leg3 * wz_by_a3;
@@ -5832,35 +5832,35 @@ impl DualV {
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][61] = wz_by_a3 * a_y_platform // mx_platform
+            output[2][61] = wz_by_a3 * a_y_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][10] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][10] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][13] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
-            output[1][13] = -::overact::math::wide::signed( // fs_3_leg1
+            output[1][13] = -::overact::math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
             output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
@@ -5871,21 +5871,21 @@ impl DualV {
             output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
             output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][25] = ::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][28] = ::overact::math::wide::signed(
                 off_3_leg2_on_q1_leg1,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
-            output[1][28] = -::overact::math::wide::signed( // fs_3_leg2
+            output[1][28] = -::overact::math::wide::signed(
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
@@ -5898,30 +5898,30 @@ impl DualV {
             output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = -::overact::math::wide::signed( // fs_1_leg4
+            output[0][48] = -::overact::math::wide::signed(
                 g1_a1_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * a2_x_leg4;
-            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * a2_x_leg4;
-            output[1][48] = -::overact::math::wide::signed( // fs_1_leg4
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][48] = -::overact::math::wide::signed(
                 g1_a2_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
             output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
             output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
             let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
             output[2][45] = zz_1_leg4_on_q1_leg3;
             output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
-            output[2][48] = ::overact::math::wide::signed( // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_q1_leg1;
             let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
@@ -5931,40 +5931,40 @@ impl DualV {
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[0][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[1][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed( // fs_2_leg4
+            output[2][55] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let qd_3_leg4 = wz - rate_2_leg4;
             output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed( // fs_3_leg4
+            output[0][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg1,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
-            output[1][58] = -::overact::math::wide::signed( // fs_3_leg4
+            output[1][58] = -::overact::math::wide::signed(
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed( // fs_3_leg4
+            output[2][58] = ::overact::math::wide::signed(
                 off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
-            );
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            ); // fs_3_leg4
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
             // --- platform
             let a_x_platform = s_phi * dvy + c_phi * dvx;
             let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
@@ -5982,10 +5982,10 @@ impl DualV {
                 + wz_by_a3_a_x_platform;
             output[2][62] = -minus_my_platform_on_q1_leg3; // my_platform
             let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t1_platform // mx_2_leg3
-                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3);
-            output[2][51] = t1_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3);
+            output[2][36] = t1_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3); // mx_2_leg3
+            output[2][51] = t1_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][44] = off_3_leg3_on_q1_leg3;
@@ -6012,13 +6012,13 @@ impl DualV {
             let t3_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
                     + t2_platform);
-            output[0][6] = t3_platform // mx_2_leg1
-                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1);
+            output[0][6] = t3_platform
+                - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1); // mx_2_leg1
             let t4_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1
                     + t2_platform);
-            output[0][51] = t4_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1);
+            output[0][51] = t4_platform
+                - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1); // mx_2_leg4
             output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1; // mx_2_leg2
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
             let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
@@ -6027,14 +6027,14 @@ impl DualV {
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
                     + t5_platform);
-            output[1][21] = t6_platform // mx_2_leg2
-                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2);
+            output[1][21] = t6_platform
+                - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2); // mx_2_leg2
             let t7_platform = R_P_SQUARED_PER_L_AB
                 * (t5_platform
                     - (minus_zz_platform_on_q1_leg2
                         + inv_r_p_my_platform_on_q1_leg2));
-            output[1][51] = t7_platform // mx_2_leg4
-                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2);
+            output[1][51] = t7_platform
+                - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2); // mx_2_leg4
             output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
             // --- leg3
             let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
@@ -6047,36 +6047,36 @@ impl DualV {
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][40] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][40] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][40] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
-            output[2][40] = ::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
             output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
             output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg1,
                 qd_3_leg3,
-            );
-            output[1][43] = -::overact::math::wide::signed( // fs_3_leg3
+            ); // fs_3_leg3
+            output[1][43] = -::overact::math::wide::signed(
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
-            );
-            output[2][43] = ::overact::math::wide::signed( // fs_3_leg3
+            ); // fs_3_leg3
+            output[2][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -6108,10 +6108,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -6727,8 +6727,8 @@ impl DualV {
         output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
         let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
         let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-            + minus_g2_vx_leg1 * a2_x_leg1;
+        output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
         // --- leg2
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
@@ -6738,8 +6738,8 @@ impl DualV {
             + L_AB_SQUARED * rate_1_squared_leg2;
         let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-        output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + g2_vx_leg2 * a2_x_leg2);
+        output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
         let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
@@ -6748,18 +6748,18 @@ impl DualV {
         output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
         output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
         output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
-        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-            + minus_g2_vy_leg1 * a2_x_leg1;
-        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-            + g2_wz_leg1 * a2_x_leg1);
+        output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+            + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+        output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+            + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
         output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
         output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
         output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
         output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
-        output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + g2_vy_leg2 * a2_x_leg2);
-        output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-            + minus_g2_wz_leg2 * a2_x_leg2;
+        output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+            + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
+        output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+            + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
         output[1][21] = g2_vy_leg2 * rate_dot_2_leg2; // zz_2_leg2R
         output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
@@ -6797,8 +6797,8 @@ impl DualV {
         output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
         let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
         let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_vx_leg3 * a2_x_leg3;
+        output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
         // --- leg4
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
@@ -6808,8 +6808,8 @@ impl DualV {
             + L_AB_SQUARED * rate_1_squared_leg4;
         let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_vx_leg4 * a2_x_leg4);
+        output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
         let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
@@ -6818,16 +6818,16 @@ impl DualV {
         output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
         output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
         output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-        output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_vy_leg3 * a2_x_leg3;
-        output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-            + minus_g2_wz_leg3 * a2_x_leg3;
+        output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+        output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+            + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
         output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
         output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
-        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_vy_leg4 * a2_x_leg4);
-        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-            + g2_wz_leg4 * a2_x_leg4);
+        output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
+        output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+            + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
         output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
         output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
         output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
@@ -6879,10 +6879,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -6976,28 +6976,28 @@ impl DualV {
             output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
             output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
             output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][12] = -::overact::math::wide::signed( // fs_1_leg1
+            output[2][12] = -::overact::math::wide::signed(
                 minus_g1_wz_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-            output[0][32] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][32] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-            output[1][32] = ::overact::math::wide::signed( // fs_2_leg1
+            output[1][32] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-            output[2][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[2][32] = -::overact::math::wide::signed(
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -7008,8 +7008,8 @@ impl DualV {
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
-            output[0][24] = g1_vx_leg1 * a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a_on_f1_leg1;
+            output[0][24] = g1_vx_leg1 * a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a_on_f1_leg1; // my_2_leg1
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
             output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
@@ -7018,23 +7018,23 @@ impl DualV {
             output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
-            output[1][24] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vy_leg1 * minus_a_on_f1_leg1;
-            output[2][24] = -(minus_g1_wz_leg1 * a_on_f2_leg1 // my_2_leg1
-                + g2_wz_leg1 * minus_a_on_f1_leg1);
+            output[1][24] = g1_vy_leg1 * a_on_f2_leg1
+                + minus_g2_vy_leg1 * minus_a_on_f1_leg1; // my_2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * a_on_f2_leg1
+                + g2_wz_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed(
                 minus_g2_vx_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
-            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[1][44] = ::overact::math::wide::signed(
                 minus_g2_vy_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][40] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
             output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
             // --- leg2
@@ -7058,8 +7058,8 @@ impl DualV {
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg2;
-            output[0][25] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            output[0][25] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
             output[0][5] = g1_vx_leg2 * rate_dot_1_leg2; // zz_1_leg2R
@@ -7075,18 +7075,18 @@ impl DualV {
             output[2][9] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
             output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
-            output[2][13] = -::overact::math::wide::signed( // fs_1_leg2
+            output[2][13] = -::overact::math::wide::signed(
                 minus_g1_wz_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             output[1][21] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
             output[2][21] = -(g2_wz_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
-            output[1][25] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[2][25] = -(minus_g1_wz_leg2 * a_on_f2_leg2 // my_2_leg2
-                + g2_wz_leg2 * minus_a_on_f1_leg2);
+            output[1][25] = g1_vy_leg2 * a_on_f2_leg2
+                + minus_g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
+            output[2][25] = -(minus_g1_wz_leg2 * a_on_f2_leg2
+                + g2_wz_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             output[0][37] = -minus_gq2_vx_leg2; // off_2_leg2R
@@ -7097,29 +7097,29 @@ impl DualV {
             let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
             output[2][37] = gq2_wz_leg2; // off_2_leg2R
             output[2][29] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
-            output[0][33] = ::overact::math::wide::signed( // fs_2_leg2
+            output[0][33] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg2,
                 minus_qd_2_leg2,
-            );
-            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
+            ); // fs_2_leg2
+            output[1][33] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg2,
                 minus_qd_2_leg2,
-            );
-            output[2][33] = -::overact::math::wide::signed( // fs_2_leg2
+            ); // fs_2_leg2
+            output[2][33] = -::overact::math::wide::signed(
                 gq2_wz_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             output[0][41] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][45] = ::overact::math::wide::signed(
                 minus_g2_vx_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[1][41] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
-            output[1][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[1][45] = ::overact::math::wide::signed(
                 minus_g2_vy_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
             output[2][41] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
             output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
@@ -7158,8 +7158,8 @@ impl DualV {
             let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg3;
-            output[0][26] = g1_vx_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vx_leg3 * minus_a_on_f1_leg3;
+            output[0][26] = g1_vx_leg3 * a_on_f2_leg3
+                + minus_g2_vx_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
             output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
@@ -7172,41 +7172,41 @@ impl DualV {
             let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3
                 + p_y_leg1 * minus_g2_vx_leg3;
             output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            output[1][26] = g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vy_leg3 * minus_a_on_f1_leg3;
-            output[2][26] = g1_wz_leg3 * a_on_f2_leg3 // my_2_leg3
-                + minus_g2_wz_leg3 * minus_a_on_f1_leg3;
+            output[1][26] = g1_vy_leg3 * a_on_f2_leg3
+                + minus_g2_vy_leg3 * minus_a_on_f1_leg3; // my_2_leg3
+            output[2][26] = g1_wz_leg3 * a_on_f2_leg3
+                + minus_g2_wz_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-            output[0][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][34] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
             output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
             output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
             output[2][38] = -minus_gq2_wz_leg3; // off_2_leg3R
             output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-            output[1][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][34] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
-            );
-            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[2][34] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][46] = ::overact::math::wide::signed(
                 minus_g2_vx_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[1][46] = ::overact::math::wide::signed(
                 minus_g2_vy_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
             output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
             output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
@@ -7231,8 +7231,8 @@ impl DualV {
             let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
-            output[0][27] = g1_vx_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_vx_leg4 * minus_a_on_f1_leg4;
+            output[0][27] = g1_vx_leg4 * a_on_f2_leg4
+                + minus_g2_vx_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
             output[0][7] = g1_vx_leg4 * rate_dot_1_leg4; // zz_1_leg4R
@@ -7253,10 +7253,10 @@ impl DualV {
             output[0][15] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
             output[1][15] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
             output[2][15] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
-            output[1][27] = g1_vy_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_vy_leg4 * minus_a_on_f1_leg4;
-            output[2][27] = g1_wz_leg4 * a_on_f2_leg4 // my_2_leg4
-                + minus_g2_wz_leg4 * minus_a_on_f1_leg4;
+            output[1][27] = g1_vy_leg4 * a_on_f2_leg4
+                + minus_g2_vy_leg4 * minus_a_on_f1_leg4; // my_2_leg4
+            output[2][27] = g1_wz_leg4 * a_on_f2_leg4
+                + minus_g2_wz_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
             output[0][39] = -minus_gq2_vx_leg4; // off_2_leg4R
@@ -7267,29 +7267,29 @@ impl DualV {
             let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
             output[2][39] = -minus_gq2_wz_leg4; // off_2_leg4R
             output[2][31] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
-            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
+            output[0][35] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg4,
                 minus_qd_2_leg4,
-            );
-            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[1][35] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg4,
                 minus_qd_2_leg4,
-            );
-            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[2][35] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg4,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             output[0][43] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
-            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[0][47] = ::overact::math::wide::signed(
                 minus_g2_vx_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             output[1][43] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
-            output[1][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[1][47] = ::overact::math::wide::signed(
                 minus_g2_vy_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
             output[2][43] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
             output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
@@ -7326,10 +7326,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7564,27 +7564,27 @@ impl DualV {
             output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
             output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
             output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][12] = -::overact::math::wide::signed( // fs_1_leg1
+            output[2][12] = -::overact::math::wide::signed(
                 minus_g1_wz_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed( // fs_1_leg2
+            output[0][13] = ::overact::math::wide::signed(
                 minus_g1_vx_leg2,
                 minus_rate_1_leg2,
-            );
-            output[1][13] = ::overact::math::wide::signed( // fs_1_leg2
+            ); // fs_1_leg2
+            output[1][13] = ::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 minus_rate_1_leg2,
-            );
-            output[2][13] = -::overact::math::wide::signed( // fs_1_leg2
+            ); // fs_1_leg2
+            output[2][13] = -::overact::math::wide::signed(
                 g1_wz_leg2,
                 minus_rate_1_leg2,
-            );
+            ); // fs_1_leg2
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
@@ -7599,36 +7599,36 @@ impl DualV {
             output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][15] = ::overact::math::wide::signed( // fs_1_leg4
+            output[0][15] = ::overact::math::wide::signed(
                 minus_g1_vx_leg4,
                 minus_rate_1_leg4,
-            );
-            output[1][15] = ::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[1][15] = ::overact::math::wide::signed(
                 minus_g1_vy_leg4,
                 minus_rate_1_leg4,
-            );
-            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[2][15] = ::overact::math::wide::signed(
                 minus_g1_wz_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[0][32] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][32] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][28] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[1][32] = ::overact::math::wide::signed( // fs_2_leg1
+            output[1][32] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[2][28] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[2][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[2][32] = -::overact::math::wide::signed(
                 gq2_wz_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][29] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
@@ -7636,23 +7636,23 @@ impl DualV {
             output[1][29] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
             output[1][33] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             output[2][29] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
-            output[2][33] = -::overact::math::wide::signed( // fs_2_leg2
+            output[2][33] = -::overact::math::wide::signed(
                 minus_gq2_wz_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
             output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][40] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed(
                 minus_g2_vx_leg1,
                 qd_3_leg1,
-            );
-            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
+            ); // fs_3_leg1
+            output[1][44] = ::overact::math::wide::signed(
                 minus_g2_vy_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][41] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
             output[1][41] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
@@ -7665,20 +7665,20 @@ impl DualV {
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[0][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][34] = ::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[1][30] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[1][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][34] = ::overact::math::wide::signed(
                 minus_gq2_vy_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[2][30] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][34] = ::overact::math::wide::signed(
                 minus_gq2_wz_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][31] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
@@ -7690,14 +7690,14 @@ impl DualV {
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][46] = ::overact::math::wide::signed(
                 minus_g2_vx_leg3,
                 qd_3_leg3,
-            );
-            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
+            ); // fs_3_leg3
+            output[1][46] = ::overact::math::wide::signed(
                 minus_g2_vy_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
             output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
             output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
@@ -7797,8 +7797,8 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + g2_vx_leg2 * a2_x_leg2);
+            output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
@@ -7806,8 +7806,8 @@ impl DualV {
             output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * a2_x_leg1;
+            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             // --- leg3
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
@@ -7827,8 +7827,8 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_vx_leg4 * a2_x_leg4);
+            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
@@ -7836,8 +7836,8 @@ impl DualV {
             output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3;
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][1] = -minus_mx_platform_on_vx; // mx_platform
             output[1][2] = -minus_mx_platform_on_vx; // my_platformR
@@ -7850,34 +7850,34 @@ impl DualV {
             output[2][2] = -a_x_platform; // my_platformR
             output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
-            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vy_leg1 * a2_x_leg1;
-            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 // my_2_leg1
-                + g2_wz_leg1 * a2_x_leg1);
+            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
             output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
-            output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + g2_vy_leg2 * a2_x_leg2);
-            output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 // my_2_leg2
-                + minus_g2_wz_leg2 * a2_x_leg2;
+            output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
+            output[2][25] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
+                + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
             output[1][21] = g2_vy_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
             output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3;
-            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 // my_2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3;
+            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
             output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
-            output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_vy_leg4 * a2_x_leg4);
-            output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                + g2_wz_leg4 * a2_x_leg4);
+            output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
+            output[2][27] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
@@ -7912,10 +7912,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -8061,15 +8061,15 @@ impl DualV {
                 + minus_g1_vx_leg2 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
                 * half_per_det_ja;
-            output[0][3] = vx_by_a1 * acceleration[0] // m_platformR
-                - minus_vy_by_a1 * acceleration[1];
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1]; // m_platformR
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3
                 + g1_vx_leg1 * g1_wz_leg3) * half_per_det_ja;
             let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
                 * half_per_det_ja;
-            output[1][3] = vx_by_a2 * acceleration[0] // m_platformR
-                - minus_vy_by_a2 * acceleration[1];
+            output[1][3] = vx_by_a2 * acceleration[0]
+                - minus_vy_by_a2 * acceleration[1]; // m_platformR
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
             let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
@@ -8091,20 +8091,20 @@ impl DualV {
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_platformR
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
                 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
+                + minus_wz_by_a2 * a_x_platform; // my_platformR
             let vy_by_a3 = p_x_leg3 * wz_by_a3;
             let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            output[2][1] = wz_by_a3 * a_y_platform // mx_platform
+            output[2][1] = wz_by_a3 * a_y_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             // --- leg4
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -8119,10 +8119,10 @@ impl DualV {
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
+            output[2][15] = ::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
@@ -8132,14 +8132,14 @@ impl DualV {
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
             output[1][19] = g1_a2_leg4; // off_1_leg4R
             output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[0][15] = -::overact::math::wide::signed( // fs_1_leg4
+            output[0][15] = -::overact::math::wide::signed(
                 g1_a1_leg4,
                 minus_rate_1_leg4,
-            );
-            output[1][15] = -::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[1][15] = -::overact::math::wide::signed(
                 g1_a2_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
@@ -8157,14 +8157,14 @@ impl DualV {
             output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][32] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
-            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
+            ); // fs_2_leg1
+            output[1][32] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
             output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
@@ -8226,33 +8226,33 @@ impl DualV {
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][45] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
-            output[1][44] = -::overact::math::wide::signed( // fs_3_leg1
+            ); // fs_3_leg1
+            output[1][44] = -::overact::math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
             output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][33] = ::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
-            output[1][45] = -::overact::math::wide::signed( // fs_3_leg2
+            output[1][45] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
             // --- leg4
@@ -8266,8 +8266,8 @@ impl DualV {
             let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
-            output[2][27] = -(7.142857142857143 // my_2_leg4
-                * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4));
+            output[2][27] = -(7.142857142857143
+                * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4)); // my_2_leg4
             // --- leg3
             let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
@@ -8304,32 +8304,32 @@ impl DualV {
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
+            output[2][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][38] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3R
             output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][34] = ::overact::math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[2][46] = ::overact::math::wide::signed(
                 wz_by_a3_minus_g2_a3_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
             output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[2][47] = ::overact::math::wide::signed(
                 wz_by_a3_minus_g2_a3_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
@@ -8351,10 +8351,10 @@ impl DualV {
             // --- leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * a2_x_leg4;
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * a2_x_leg4;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
@@ -8363,46 +8363,46 @@ impl DualV {
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
             output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][34] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
-            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg3
+            output[0][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
-            );
-            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[1][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][46] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
-            );
-            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg3
+            output[0][47] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
-            output[1][46] = -::overact::math::wide::signed( // fs_3_leg3
+            output[1][46] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][47] = -::overact::math::wide::signed( // fs_3_leg4
+            output[1][47] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -8435,10 +8435,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -8541,12 +8541,12 @@ impl DualV {
                 + minus_g1_wz_leg2 * g1_vx_leg3) * inv_det_ja;
             let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
                 * inv_det_ja;
-            output[0][3] = vx_by_a1 * acceleration[0] // m_platformR
-                - minus_vy_by_a1 * acceleration[1];
+            output[0][3] = vx_by_a1 * acceleration[0]
+                - minus_vy_by_a1 * acceleration[1]; // m_platformR
             let minus_vx_by_a2 = t2 * inv_det_ja;
             let vy_by_a2 = t1 * inv_det_ja;
-            output[1][3] = vy_by_a2 * acceleration[1] // m_platformR
-                - minus_vx_by_a2 * acceleration[0];
+            output[1][3] = vy_by_a2 * acceleration[1]
+                - minus_vx_by_a2 * acceleration[0]; // m_platformR
             let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3)
                 * inv_det_ja;
             output[0][0] = wz_by_a1 * acceleration[2]; // zz_platformR
@@ -8557,8 +8557,8 @@ impl DualV {
             output[2][0] = -minus_zz_platform_on_q1_leg3; // zz_platformR
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
             let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
-            output[2][2] = R_P * minus_zz_platform_on_q1_leg3 // my_platformR
-                + minus_wz_by_a3_a_x_platform;
+            output[2][2] = R_P * minus_zz_platform_on_q1_leg3
+                + minus_wz_by_a3_a_x_platform; // my_platformR
             output[2][3] = -(R_P * minus_wz_by_a3_a_x_platform); // m_platformR
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
             let v_arm_x_leg3 = p_y_leg1 * twist[2];
@@ -8580,19 +8580,19 @@ impl DualV {
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 // mx_platform
-                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform;
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][1] = minus_vx_by_a2 * inv_r_p_a_arm_y_leg3
+                - vy_by_a2 * inv_r_p_a_arm_x_leg1 + wz_by_a2 * a_y_platform; // mx_platform
             let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
             let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
-            output[2][1] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3 // mx_platform
+            output[2][1] = minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
                 + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
-                - minus_wz_by_a3 * a_y_platform;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
-                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform);
+                - minus_wz_by_a3 * a_y_platform; // mx_platform
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_platformR
+            output[1][2] = -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform); // my_platformR
             let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
             let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3
@@ -8624,23 +8624,23 @@ impl DualV {
             output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][32] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
             output[1][48] = off_3_leg1_on_q1_leg2; // off_3_leg1R
             output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
             output[2][40] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
-            output[1][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[1][44] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
-            output[2][44] = -::overact::math::wide::signed( // fs_3_leg1
+            ); // fs_3_leg1
+            output[2][44] = -::overact::math::wide::signed(
                 minus_wz_by_a3,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             // --- leg2
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
@@ -8671,49 +8671,49 @@ impl DualV {
             output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
-            output[0][33] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][33] = -::overact::math::wide::signed(
                 g2_a1_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][45] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][41] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
-            output[2][45] = -::overact::math::wide::signed( // fs_3_leg2
+            output[2][45] = -::overact::math::wide::signed(
                 minus_wz_by_a3,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][32] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
             output[1][29] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
-            output[1][33] = -::overact::math::wide::signed( // fs_2_leg2
+            output[1][33] = -::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
             output[1][41] = qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2; // fv_3_leg2
-            output[1][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[1][45] = ::overact::math::wide::signed(
                 wz_by_a2_minus_g2_a2_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
@@ -8751,40 +8751,40 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][34] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][46] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
             output[1][42] = qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3; // fv_3_leg3
-            output[1][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[1][46] = ::overact::math::wide::signed(
                 wz_by_a2_minus_g2_a2_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
             output[2][38] = off_2_leg3_on_q1_leg3; // off_2_leg3R
             output[2][30] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
-            output[2][34] = -::overact::math::wide::signed( // fs_2_leg3
+            output[2][34] = -::overact::math::wide::signed(
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
             output[2][42] = -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3); // fv_3_leg3
-            output[2][46] = -::overact::math::wide::signed( // fs_3_leg3
+            output[2][46] = -::overact::math::wide::signed(
                 g2_a3_minus_wz_by_a3_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
@@ -8810,15 +8810,15 @@ impl DualV {
                 - minus_g2_vx_leg4 * vx_by_a1 - minus_g2_wz_leg4 * wz_by_a1;
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + L_AB * rate_1_squared_leg4;
-            output[0][27] = g1_a1_leg4 * a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * minus_a_on_f1_leg4;
+            output[0][27] = g1_a1_leg4 * a_on_f2_leg4
+                - g2_a1_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
                 + g1_wz_leg4 * wz_by_a2;
             output[1][19] = g1_a2_leg4; // off_1_leg4R
             let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2
                 - minus_g2_vy_leg4 * vy_by_a2 - minus_g2_wz_leg4 * wz_by_a2;
-            output[1][27] = g1_a2_leg4 * a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * minus_a_on_f1_leg4;
+            output[1][27] = g1_a2_leg4 * a_on_f2_leg4
+                - g2_a2_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let v2_by_1_y_leg4 = L_AB * c2_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
@@ -8829,8 +8829,8 @@ impl DualV {
             let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
             output[2][19] = -minus_g1_a3_leg4; // off_1_leg4R
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
-            output[2][27] = -(minus_g1_a3_leg4 * a_on_f2_leg4 // my_2_leg4
-                + g2_a3_leg4 * minus_a_on_f1_leg4);
+            output[2][27] = -(minus_g1_a3_leg4 * a_on_f2_leg4
+                + g2_a3_leg4 * minus_a_on_f1_leg4); // my_2_leg4
             output[1][7] = g1_a2_leg4 * rate_dot_1_leg4; // zz_1_leg4R
             output[2][7] = -(minus_g1_a3_leg4 * rate_dot_1_leg4); // zz_1_leg4R
             output[0][11] = g1_a1_leg4 * rate_1_leg4; // fv_1_leg4
@@ -8838,10 +8838,10 @@ impl DualV {
             output[2][11] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
             output[0][15] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
             output[1][15] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][15] = -::overact::math::wide::signed( // fs_1_leg4
+            output[2][15] = -::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 rate_1_leg4,
-            );
+            ); // fs_1_leg4
             output[1][23] = -(g2_a2_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             output[2][23] = -(g2_a3_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
@@ -8851,40 +8851,40 @@ impl DualV {
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[0][47] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
             output[1][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2); // fv_2_leg4
             let wz_by_a2_minus_g2_a2_leg4 = wz_by_a2 - g2_a2_leg4;
             output[1][43] = qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4; // fv_3_leg4
-            output[1][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[1][47] = ::overact::math::wide::signed(
                 wz_by_a2_minus_g2_a2_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
             let g2_a3_minus_wz_by_a3_leg4 = g2_a3_leg4 + minus_wz_by_a3;
             output[2][43] = -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4); // fv_3_leg4
-            output[2][47] = -::overact::math::wide::signed( // fs_3_leg4
+            output[2][47] = -::overact::math::wide::signed(
                 g2_a3_minus_wz_by_a3_leg4,
                 qd_3_leg4,
-            );
-            output[0][35] = -::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_3_leg4
+            output[0][35] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
-            );
-            output[1][35] = -::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[1][35] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
-            );
-            output[2][35] = -::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[2][35] = -::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
-            );
+            ); // fs_2_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -8918,10 +8918,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -9288,9 +9288,9 @@ impl DualV {
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
-            output[2][27] = -(7.142857142857143 // my_2_leg4
+            output[2][27] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
-                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4));
+                    + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
             // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
@@ -9332,12 +9332,12 @@ impl DualV {
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
             let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][1] = wz_by_a3 * a_y_platform // mx_platform
+            output[2][1] = wz_by_a3 * a_y_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             let a_x_platform = s_phi * dvy + c_phi * dvx;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_platformR
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_platformR
             output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][21] = g2_a2_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let rate_dot_2_leg4 = k1_leg4
@@ -9352,13 +9352,13 @@ impl DualV {
             output[1][0] = -(minus_wz_by_a2 * dwz); // zz_platformR
             let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
             output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_platform
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_platformR
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
                 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
+                + minus_wz_by_a2 * a_x_platform; // my_platformR
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
             output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
             output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
@@ -9378,55 +9378,55 @@ impl DualV {
             output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
-            output[0][15] = -::overact::math::wide::signed( // fs_1_leg4
+            output[0][15] = -::overact::math::wide::signed(
                 g1_a1_leg4,
                 minus_rate_1_leg4,
-            );
-            output[1][15] = -::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[1][15] = -::overact::math::wide::signed(
                 g1_a2_leg4,
                 minus_rate_1_leg4,
-            );
-            output[2][15] = ::overact::math::wide::signed( // fs_1_leg4
+            ); // fs_1_leg4
+            output[2][15] = ::overact::math::wide::signed(
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
-            );
+            ); // fs_1_leg4
             output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[0][26] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
             output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a1_leg4 * a2_x_leg4;
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 // my_2_leg4
-                - g2_a2_leg4 * a2_x_leg4;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][32] = -::overact::math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][32] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][32] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][29] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
             output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][33] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][33] = ::overact::math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed( // fs_2_leg3
+            output[2][34] = ::overact::math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
-            );
+            ); // fs_2_leg3
             // --- leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
@@ -9438,52 +9438,52 @@ impl DualV {
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[0][34] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
-            );
-            output[1][34] = -::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[1][34] = -::overact::math::wide::signed(
                 g2_a2_leg3,
                 minus_qd_2_leg3,
-            );
-            output[0][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg3
+            output[0][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
-            );
-            output[1][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[1][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
-            );
-            output[2][35] = ::overact::math::wide::signed( // fs_2_leg4
+            ); // fs_2_leg4
+            output[2][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
-            );
+            ); // fs_2_leg4
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed( // fs_3_leg1
+            output[0][44] = ::overact::math::wide::signed(
                 off_3_leg1_on_q1_leg1,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
-            output[1][44] = -::overact::math::wide::signed( // fs_3_leg1
+            output[1][44] = -::overact::math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
-            );
+            ); // fs_3_leg1
             output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
             output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed( // fs_3_leg2
+            output[0][45] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
-            output[1][45] = -::overact::math::wide::signed( // fs_3_leg2
+            output[1][45] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
-            );
+            ); // fs_3_leg2
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
@@ -9492,38 +9492,38 @@ impl DualV {
             let qd_3_leg4 = wz - rate_2_leg4;
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[0][46] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
-            );
-            output[0][47] = ::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg3
+            output[0][47] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][46] = -::overact::math::wide::signed( // fs_3_leg3
+            output[1][46] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
-            );
-            output[1][47] = -::overact::math::wide::signed( // fs_3_leg4
+            ); // fs_3_leg3
+            output[1][47] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed( // fs_3_leg3
+            output[2][46] = ::overact::math::wide::signed(
                 wz_by_a3_minus_g2_a3_leg3,
                 qd_3_leg3,
-            );
+            ); // fs_3_leg3
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
             output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed( // fs_3_leg4
+            output[2][47] = ::overact::math::wide::signed(
                 wz_by_a3_minus_g2_a3_leg4,
                 qd_3_leg4,
-            );
+            ); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -9553,10 +9553,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_payload`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_payload`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_payload_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9626,10 +9626,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_payload_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_payload_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_payload_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -9704,10 +9704,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_payload_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_payload_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_payload_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -10014,10 +10014,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_payload_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_payload_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_payload_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10123,20 +10123,20 @@ impl DualV {
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         let vy_by_a3 = p_x_leg3 * wz_by_a3;
         let vx_by_a3 = p_y_leg1 * wz_by_a3;
-        output[2][1] = wz_by_a3 * a_y_platform // mx_payload
-            - (vy_by_a3 * inv_r_p_a_arm_x_leg1 + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+        output[2][1] = wz_by_a3 * a_y_platform
+            - (vy_by_a3 * inv_r_p_a_arm_x_leg1 + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_payload
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
         output[2][2] = -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform); // my_payload
         output[2][3] = R_P * wz_by_a3_a_x_platform; // m_payload
-        output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 // mx_payload
-            - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-        output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1 // my_payload
-            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-        output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 // mx_payload
-            - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-        output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1 // my_payload
-            + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform;
+        output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+            - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_payload
+        output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_payload
+        output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+            - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_payload
+        output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform; // my_payload
         ::core::result::Result::Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).

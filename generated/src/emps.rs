@@ -31,7 +31,7 @@
 /// | `forward_dynamics_base` | 6, 1 sg, 1 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
 ///
 /// # Names
 ///
@@ -285,10 +285,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -333,10 +333,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],

@@ -54,7 +54,7 @@
 /// | `forward_dynamics_base` | 220, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
 ///
 /// # Names
 ///
@@ -1148,10 +1148,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1222,14 +1222,14 @@ impl FiveBar {
                 + minus_g1_vy_left * twist[1];
             output[0][4] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
             output[1][4] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
-            output[0][5] = ::overact::math::wide::signed( // fs_1_left
+            output[0][5] = ::overact::math::wide::signed(
                 minus_g1_vx_left,
                 minus_rate_1_left,
-            );
-            output[1][5] = ::overact::math::wide::signed( // fs_1_left
+            ); // fs_1_left
+            output[1][5] = ::overact::math::wide::signed(
                 minus_g1_vy_left,
                 minus_rate_1_left,
-            );
+            ); // fs_1_left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -1250,8 +1250,8 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-            output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left // my_2_left
-                + g2_vx_left * a2_x_left);
+            output[0][9] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                + g2_vx_left * a2_x_left); // my_2_left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
@@ -1259,8 +1259,8 @@ impl FiveBar {
             let qd_2_left = minus_rate_1_left + rate_2_left;
             let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
             output[0][11] = d_x_left * t4_left; // fs_2_left
-            output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left // my_2_left
-                + g2_vy_left * a2_x_left);
+            output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                + g2_vy_left * a2_x_left); // my_2_left
             let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
             output[1][7] = zz_2_left_on_vy;
             output[1][11] = pose[1] * t4_left; // fs_2_left
@@ -1268,10 +1268,10 @@ impl FiveBar {
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let minus_m_2_left_on_vy = minus_g1_vy_left * t5_left;
             output[1][10] = -minus_m_2_left_on_vy; // m_2_left
-            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
+            output[1][8] = inv_l_2_m_platform_on_vy
                 - 0.16
                     * (1.5625 * zz_2_left_on_vy
-                        - INV_L_1_SQUARED * minus_m_2_left_on_vy);
+                        - INV_L_1_SQUARED * minus_m_2_left_on_vy); // mx_2_left
             let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
             output[1][0] = zz_1_left_on_vy;
             output[1][3] = zz_1_left_on_vy; // ia_1_left
@@ -1281,10 +1281,10 @@ impl FiveBar {
             let inv_l_2_dvx = INV_L_2 * acceleration[0];
             let minus_m_2_left_on_vx = minus_g1_vx_left * t5_left;
             output[0][10] = -minus_m_2_left_on_vx; // m_2_left
-            output[0][8] = inv_l_2_dvx // mx_2_left
+            output[0][8] = inv_l_2_dvx
                 - 0.16
                     * (1.5625 * zz_2_left_on_vx
-                        - INV_L_1_SQUARED * minus_m_2_left_on_vx);
+                        - INV_L_1_SQUARED * minus_m_2_left_on_vx); // mx_2_left
             // --- right
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let k_right = 1.0 / det_right;
@@ -1326,8 +1326,8 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-            output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vx_right * a2_x_right;
+            output[0][21] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right; // my_2_right
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
@@ -1335,23 +1335,23 @@ impl FiveBar {
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             let t4_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
             output[0][23] = d_x_right * t4_right; // fs_2_right
-            output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vy_right * a2_x_right;
+            output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right; // my_2_right
             let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
             output[1][19] = zz_2_right_on_vy;
             let t5_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
             let m_2_right_on_vx = g1_vx_right * t5_right;
             output[0][22] = m_2_right_on_vx;
-            output[0][20] = inv_l_2_dvx // mx_2_right
+            output[0][20] = inv_l_2_dvx
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
-                        + 1.5625 * zz_2_right_on_vx);
+                        + 1.5625 * zz_2_right_on_vx); // mx_2_right
             let m_2_right_on_vy = g1_vy_right * t5_right;
             output[1][22] = m_2_right_on_vy;
-            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_vy
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
-                        + 1.5625 * zz_2_right_on_vy);
+                        + 1.5625 * zz_2_right_on_vy); // mx_2_right
             output[1][23] = pose[1] * t4_right; // fs_2_right
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
@@ -1391,10 +1391,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -1474,26 +1474,26 @@ impl FiveBar {
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
             let m_2_left_on_vy = g1_vy_left * t1_left;
             output[1][10] = m_2_left_on_vy;
-            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
+            output[1][8] = inv_l_2_m_platform_on_vy
                 - 0.16
-                    * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy);
+                    * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy); // mx_2_left
             let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
             let a2_x_left = a_on_f1_left + s12_left * 9.81;
-            output[0][9] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
-                + minus_g2_vx_left * a2_x_left;
-            output[1][9] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
-                + minus_g2_vy_left * a2_x_left;
+            output[0][9] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+                + minus_g2_vx_left * a2_x_left; // my_2_left
+            output[1][9] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+                + minus_g2_vy_left * a2_x_left; // my_2_left
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
             let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-            output[1][11] = ::overact::math::wide::signed( // fs_2_left
+            output[1][11] = ::overact::math::wide::signed(
                 minus_gq2_vy_left,
                 minus_qd_2_left,
-            );
+            ); // fs_2_left
             let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
-            output[0][11] = ::overact::math::wide::signed( // fs_2_left
+            output[0][11] = ::overact::math::wide::signed(
                 minus_gq2_vx_left,
                 minus_qd_2_left,
-            );
+            ); // fs_2_left
             let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
             output[0][7] = zz_2_left_on_vx;
             let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
@@ -1505,9 +1505,9 @@ impl FiveBar {
             let inv_l_2_dvx = INV_L_2 * acceleration[0];
             let m_2_left_on_vx = g1_vx_left * t1_left;
             output[0][10] = m_2_left_on_vx;
-            output[0][8] = inv_l_2_dvx // mx_2_left
+            output[0][8] = inv_l_2_dvx
                 - 0.16
-                    * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx);
+                    * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx); // mx_2_left
             // --- right
             let c12_right = c1_right * c2_right - s1_right * s2_right;
             let k1_right = INV_L_1 / s2_right;
@@ -1549,35 +1549,35 @@ impl FiveBar {
             let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
             let m_2_right_on_vx = g1_vx_right * t1_right;
             output[0][22] = m_2_right_on_vx;
-            output[0][20] = inv_l_2_dvx // mx_2_right
+            output[0][20] = inv_l_2_dvx
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
-                        + 1.5625 * zz_2_right_on_vx);
+                        + 1.5625 * zz_2_right_on_vx); // mx_2_right
             let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
             output[1][19] = zz_2_right_on_vy;
             let m_2_right_on_vy = g1_vy_right * t1_right;
             output[1][22] = m_2_right_on_vy;
-            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_vy
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
-                        + 1.5625 * zz_2_right_on_vy);
+                        + 1.5625 * zz_2_right_on_vy); // mx_2_right
             let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
             let a2_x_right = a_on_f1_right + 9.81 * s12_right;
-            output[0][21] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vx_right * a2_x_right;
-            output[1][21] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vy_right * a2_x_right;
+            output[0][21] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right; // my_2_right
+            output[1][21] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right; // my_2_right
             let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = ::overact::math::wide::signed( // fs_2_right
+            output[0][23] = ::overact::math::wide::signed(
                 minus_gq2_vx_right,
                 minus_qd_2_right,
-            );
+            ); // fs_2_right
             let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-            output[1][23] = ::overact::math::wide::signed( // fs_2_right
+            output[1][23] = ::overact::math::wide::signed(
                 minus_gq2_vy_right,
                 minus_qd_2_right,
-            );
+            ); // fs_2_right
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
             output[0][15] = zz_1_right_on_vx; // ia_1_right
@@ -1616,10 +1616,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -1702,24 +1702,24 @@ impl FiveBar {
             )?;
             output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]); // fv_1_left
             output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
-            output[0][5] = -::overact::math::wide::signed( // fs_1_left
+            output[0][5] = -::overact::math::wide::signed(
                 minus_g1_vx_left,
                 actuator_velocities[0],
-            );
-            output[1][5] = -::overact::math::wide::signed( // fs_1_left
+            ); // fs_1_left
+            output[1][5] = -::overact::math::wide::signed(
                 minus_g1_vy_left,
                 actuator_velocities[0],
-            );
+            ); // fs_1_left
             output[0][16] = g1_vx_right * actuator_velocities[1]; // fv_1_right
             output[1][16] = g1_vy_right * actuator_velocities[1]; // fv_1_right
-            output[0][17] = ::overact::math::wide::signed( // fs_1_right
+            output[0][17] = ::overact::math::wide::signed(
                 g1_vx_right,
                 actuator_velocities[1],
-            );
-            output[1][17] = ::overact::math::wide::signed( // fs_1_right
+            ); // fs_1_right
+            output[1][17] = ::overact::math::wide::signed(
                 g1_vy_right,
                 actuator_velocities[1],
-            );
+            ); // fs_1_right
             // --- left
             let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
             output[0][0] = -minus_zz_1_left_on_vx; // zz_1_left
@@ -1815,14 +1815,14 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-            output[0][9] = minus_g1_vx_left * inv_l_2_a_on_f2_left // my_2_left
-                - g2_vx_left * a2_x_left;
+            output[0][9] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+                - g2_vx_left * a2_x_left; // my_2_left
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t4_left);
             let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
             output[0][7] = -minus_zz_2_left_on_vx; // zz_2_left
-            output[1][9] = minus_g1_vy_left * inv_l_2_a_on_f2_left // my_2_left
-                - g2_vy_left * a2_x_left;
+            output[1][9] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+                - g2_vy_left * a2_x_left; // my_2_left
             // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
@@ -1833,40 +1833,40 @@ impl FiveBar {
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * bias_a1_y_plus_l_1_qdd1_right;
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            output[0][21] = minus_g2_vx_right * a2_x_right // my_2_right
-                - g1_vx_right * inv_l_2_a_on_f2_right;
+            output[0][21] = minus_g2_vx_right * a2_x_right
+                - g1_vx_right * inv_l_2_a_on_f2_right; // my_2_right
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
             let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
             output[0][19] = -minus_zz_2_right_on_vx; // zz_2_right
-            output[1][21] = minus_g2_vy_right * a2_x_right // my_2_right
-                - g1_vy_right * inv_l_2_a_on_f2_right;
+            output[1][21] = minus_g2_vy_right * a2_x_right
+                - g1_vy_right * inv_l_2_a_on_f2_right; // my_2_right
             let qd_2_right = rate_2_right - actuator_velocities[1];
             let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
             output[0][23] = -(d_x_right * t4_right); // fs_2_right
             let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
             output[1][7] = -minus_zz_2_left_on_vy; // zz_2_left
             let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
-            output[0][8] = 0.16 // mx_2_left
+            output[0][8] = 0.16
                 * (INV_L_1_SQUARED * minus_m_2_left_on_vx
-                    + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx;
-            output[0][20] = -(minus_inv_l_2_dvx // mx_2_right
+                    + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx; // mx_2_left
+            output[0][20] = -(minus_inv_l_2_dvx
                 + 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vx
-                        - 1.5625 * minus_zz_2_right_on_vx));
+                        - 1.5625 * minus_zz_2_right_on_vx)); // mx_2_right
             let m_platform_on_vy = dvy + 9.81;
             output[1][24] = m_platform_on_vy;
             let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-            output[1][8] = inv_l_2_m_platform_on_vy // mx_2_left
+            output[1][8] = inv_l_2_m_platform_on_vy
                 + 0.16
                     * (INV_L_1_SQUARED * minus_m_2_left_on_vy
-                        + 1.5625 * minus_zz_2_left_on_vy);
+                        + 1.5625 * minus_zz_2_left_on_vy); // mx_2_left
             let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
             output[1][19] = -minus_zz_2_right_on_vy; // zz_2_right
-            output[1][20] = inv_l_2_m_platform_on_vy // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_vy
                 - 0.16
                     * (INV_L_1_SQUARED * m_2_right_on_vy
-                        - 1.5625 * minus_zz_2_right_on_vy);
+                        - 1.5625 * minus_zz_2_right_on_vy); // mx_2_right
             output[1][23] = -(pose[1] * t4_right); // fs_2_right
             ::core::result::Result::Ok(())
         })
@@ -1897,10 +1897,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2028,10 +2028,10 @@ impl FiveBar {
             let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
             output[0][7] = zz_2_left_on_q1_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][11] = ::overact::math::wide::signed( // fs_2_left
+            output[0][11] = ::overact::math::wide::signed(
                 g2_a1_left - 1.0,
                 qd_2_left,
-            );
+            ); // fs_2_left
             let g2_a2_left = k_left * inv_det_ja;
             output[1][9] = -(g2_a2_left * a2_x_left); // my_2_left
             output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
@@ -2042,10 +2042,10 @@ impl FiveBar {
                 - minus_vx_by_a1 * acceleration[0];
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
+            output[0][8] = inv_l_2_m_platform_on_q1_left
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
-                        + 1.5625 * zz_2_left_on_q1_left);
+                        + 1.5625 * zz_2_left_on_q1_left); // mx_2_left
             output[0][10] = L_1 * a1_y_plus_l_1_rate_dot_1_left; // m_2_left
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
@@ -2053,8 +2053,8 @@ impl FiveBar {
                 - minus_vx_by_a2 * acceleration[0];
             output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
-                - L_2 * zz_2_left_on_q1_right;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                - L_2 * zz_2_left_on_q1_right; // mx_2_left
             // --- right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
@@ -2085,25 +2085,25 @@ impl FiveBar {
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
             output[0][19] = -minus_zz_2_right_on_q1_left; // zz_2_right
-            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
-                + L_2 * minus_zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                + L_2 * minus_zz_2_right_on_q1_left; // mx_2_right
             let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
             output[1][19] = -minus_zz_2_right_on_q1_right; // zz_2_right
-            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right
                 - 0.16
                     * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
-                        - 1.5625 * minus_zz_2_right_on_q1_right);
+                        - 1.5625 * minus_zz_2_right_on_q1_right); // mx_2_right
             output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
             output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed( // fs_2_right
+            output[0][23] = -::overact::math::wide::signed(
                 g2_a1_right,
                 minus_qd_2_right,
-            );
-            output[1][23] = -::overact::math::wide::signed( // fs_2_right
+            ); // fs_2_right
+            output[1][23] = -::overact::math::wide::signed(
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
-            );
+            ); // fs_2_right
             output[1][17] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
             ::core::result::Result::Ok(())
         })
@@ -2137,10 +2137,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2238,16 +2238,16 @@ impl FiveBar {
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
             output[0][7] = -minus_zz_2_left_on_q1_left; // zz_2_left
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-            output[0][11] = -::overact::math::wide::signed( // fs_2_left
+            output[0][11] = -::overact::math::wide::signed(
                 g2_a1_left - 1.0,
                 minus_qd_2_left,
-            );
+            ); // fs_2_left
             let minus_g2_a2_left = k2_left * l_1_per_det_ja;
             output[1][9] = minus_g2_a2_left * a2_x_left; // my_2_left
-            output[1][11] = ::overact::math::wide::signed( // fs_2_left
+            output[1][11] = ::overact::math::wide::signed(
                 minus_g2_a2_left,
                 minus_qd_2_left,
-            );
+            ); // fs_2_left
             let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
             output[1][7] = zz_2_left_on_q1_right;
             let t1_platform = acceleration[1] + 9.81;
@@ -2255,8 +2255,8 @@ impl FiveBar {
                 - minus_vx_by_a1 * acceleration[0];
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
-                - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left);
+            output[0][8] = inv_l_2_m_platform_on_q1_left
+                - 0.16 * (INV_L_1 * t5_left - 1.5625 * minus_zz_2_left_on_q1_left); // mx_2_left
             output[0][10] = L_1 * t5_left; // m_2_left
             let vx_by_a2 = s1_fk1_x_plus_c1_left * l_1_per_det_ja;
             let minus_vy_by_a2 = c1_fk1_x_minus_s1_left * l_1_per_det_ja;
@@ -2264,8 +2264,8 @@ impl FiveBar {
                 - minus_vy_by_a2 * t1_platform;
             output[1][24] = m_platform_on_q1_right;
             let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
-            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
-                - L_2 * zz_2_left_on_q1_right;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                - L_2 * zz_2_left_on_q1_right; // mx_2_left
             // --- right
             let c1_dvx_plus_s1_dvy_right = c1_right * acceleration[0]
                 + s1_right * acceleration[1];
@@ -2296,25 +2296,25 @@ impl FiveBar {
                 * (a_on_f2_right + t1_right * minus_rate_2_right);
             let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
             output[0][19] = -minus_zz_2_right_on_q1_left; // zz_2_right
-            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
-                + L_2 * minus_zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                + L_2 * minus_zz_2_right_on_q1_left; // mx_2_right
             output[1][17] = ::overact::math::wide::sign(t2_right); // fs_1_right
             let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
             output[1][19] = -minus_zz_2_right_on_q1_right; // zz_2_right
-            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right
                 - 0.16
-                    * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right);
+                    * (INV_L_1 * t5_right - 1.5625 * minus_zz_2_right_on_q1_right); // mx_2_right
             output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
             output[1][22] = L_1 * t5_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed( // fs_2_right
+            output[0][23] = -::overact::math::wide::signed(
                 g2_a1_right,
                 minus_qd_2_right,
-            );
-            output[1][23] = -::overact::math::wide::signed( // fs_2_right
+            ); // fs_2_right
+            output[1][23] = -::overact::math::wide::signed(
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
-            );
+            ); // fs_2_right
             let rate_dot_1_right = INV_L_1 * t4_right;
             output[1][12] = rate_dot_1_right; // zz_1_right
             output[1][15] = rate_dot_1_right; // ia_1_right
@@ -2350,10 +2350,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2550,40 +2550,40 @@ impl FiveBar {
                 - minus_g2_vy_right * vy_by_a2;
             let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
             output[1][19] = zz_2_right_on_q1_right;
-            output[1][20] = inv_l_2_m_platform_on_q1_right // mx_2_right
+            output[1][20] = inv_l_2_m_platform_on_q1_right
                 - 0.16
                     * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
-                        + 1.5625 * zz_2_right_on_q1_right);
+                        + 1.5625 * zz_2_right_on_q1_right); // mx_2_right
             let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx
                 + vy_by_a1 * t1_platform;
             output[0][24] = m_platform_on_q1_left;
             let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
-            output[0][8] = inv_l_2_m_platform_on_q1_left // mx_2_left
+            output[0][8] = inv_l_2_m_platform_on_q1_left
                 - 0.16
                     * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
-                        - 1.5625 * minus_zz_2_left_on_q1_left);
+                        - 1.5625 * minus_zz_2_left_on_q1_left); // mx_2_left
             output[0][9] = -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left); // my_2_left
             output[1][21] = -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right); // my_2_right
             let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
             output[1][7] = -minus_zz_2_left_on_q1_right; // zz_2_left
-            output[1][8] = inv_l_2_m_platform_on_q1_right // mx_2_left
-                + L_2 * minus_zz_2_left_on_q1_right;
+            output[1][8] = inv_l_2_m_platform_on_q1_right
+                + L_2 * minus_zz_2_left_on_q1_right; // mx_2_left
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][11] = ::overact::math::wide::signed( // fs_2_left
+            output[0][11] = ::overact::math::wide::signed(
                 g2_a1_left - 1.0,
                 qd_2_left,
-            );
+            ); // fs_2_left
             output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
             output[0][19] = zz_2_right_on_q1_left;
-            output[0][20] = inv_l_2_m_platform_on_q1_left // mx_2_right
-                - L_2 * zz_2_right_on_q1_left;
+            output[0][20] = inv_l_2_m_platform_on_q1_left
+                - L_2 * zz_2_right_on_q1_left; // mx_2_right
             let qd_2_right = rate_2_right - actuator_velocities[1];
             output[0][23] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
-            output[1][23] = ::overact::math::wide::signed( // fs_2_right
+            output[1][23] = ::overact::math::wide::signed(
                 g2_a2_right - 1.0,
                 qd_2_right,
-            );
+            ); // fs_2_right
             ::core::result::Result::Ok(())
         })
     }
@@ -2613,10 +2613,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2684,14 +2684,14 @@ impl FiveBar {
                 + minus_g1_vy_left * twist[1];
             output[0][7] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
             output[1][7] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
-            output[0][9] = ::overact::math::wide::signed( // fs_1_left
+            output[0][9] = ::overact::math::wide::signed(
                 minus_g1_vx_left,
                 minus_rate_1_left,
-            );
-            output[1][9] = ::overact::math::wide::signed( // fs_1_left
+            ); // fs_1_left
+            output[1][9] = ::overact::math::wide::signed(
                 minus_g1_vy_left,
                 minus_rate_1_left,
-            );
+            ); // fs_1_left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -2710,16 +2710,16 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            output[0][15] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left // my_2_left
-                + g2_vx_left * a2_x_left);
+            output[0][15] = -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                + g2_vx_left * a2_x_left); // my_2_left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             output[0][13] = g2_vx_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
             let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
             output[0][17] = d_x_left * t4_left; // fs_2_left
-            output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left // my_2_left
-                + g2_vy_left * a2_x_left);
+            output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                + g2_vy_left * a2_x_left); // my_2_left
             output[1][13] = g2_vy_left * rate_dot_2_left; // zz_2_leftR
             output[0][1] = minus_g1_vx_left * minus_rate_dot_1_left; // zz_1_leftR
             output[1][1] = minus_g1_vy_left * minus_rate_dot_1_left; // zz_1_leftR
@@ -2764,16 +2764,16 @@ impl FiveBar {
             let s2_right = 20.0 * det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            output[0][16] = g1_vx_right * minus_inv_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vx_right * a2_x_right;
+            output[0][16] = g1_vx_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vx_right * a2_x_right; // my_2_right
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right; // zz_2_rightR
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
             let t4_right = ::overact::math::wide::signed(k_right, minus_qd_2_right);
             output[0][18] = d_x_right * t4_right; // fs_2_right
-            output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right // my_2_right
-                + minus_g2_vy_right * a2_x_right;
+            output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right
+                + minus_g2_vy_right * a2_x_right; // my_2_right
             output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right; // zz_2_rightR
             output[0][2] = g1_vx_right * rate_dot_1_right; // zz_1_rightR
             output[1][2] = g1_vy_right * rate_dot_1_right; // zz_1_rightR
@@ -2810,10 +2810,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2906,13 +2906,13 @@ impl FiveBar {
         output[1][13] = minus_g2_vy_left * minus_rate_dot_2_left; // zz_2_leftR
         let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
         let a2_x_left = a_on_f1_left + s12_left * 9.81;
-        output[0][15] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
-            + minus_g2_vx_left * a2_x_left;
+        output[0][15] = g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+            + minus_g2_vx_left * a2_x_left; // my_2_left
         let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
         output[0][17] = ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left); // fs_2_left
-        output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left // my_2_left
-            + minus_g2_vy_left * a2_x_left;
+        output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+            + minus_g2_vy_left * a2_x_left; // my_2_left
         let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
         output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left); // fs_2_left
         // --- right
@@ -2939,13 +2939,13 @@ impl FiveBar {
         output[1][14] = minus_g2_vy_right * minus_rate_dot_2_right; // zz_2_rightR
         let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
         let a2_x_right = a_on_f1_right + s12_right * 9.81;
-        output[0][16] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
-            + minus_g2_vx_right * a2_x_right;
+        output[0][16] = g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+            + minus_g2_vx_right * a2_x_right; // my_2_right
         let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         output[0][18] = ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right); // fs_2_right
-        output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right // my_2_right
-            + minus_g2_vy_right * a2_x_right;
+        output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+            + minus_g2_vy_right * a2_x_right; // my_2_right
         let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
         output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
         ::core::result::Result::Ok(())
@@ -2979,10 +2979,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3068,22 +3068,22 @@ impl FiveBar {
             output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
             output[0][8] = g1_vx_right * actuator_velocities[1]; // fv_1_right
             output[1][8] = g1_vy_right * actuator_velocities[1]; // fv_1_right
-            output[0][9] = -::overact::math::wide::signed( // fs_1_left
+            output[0][9] = -::overact::math::wide::signed(
                 minus_g1_vx_left,
                 actuator_velocities[0],
-            );
-            output[1][9] = -::overact::math::wide::signed( // fs_1_left
+            ); // fs_1_left
+            output[1][9] = -::overact::math::wide::signed(
                 minus_g1_vy_left,
                 actuator_velocities[0],
-            );
-            output[0][10] = ::overact::math::wide::signed( // fs_1_right
+            ); // fs_1_left
+            output[0][10] = ::overact::math::wide::signed(
                 g1_vx_right,
                 actuator_velocities[1],
-            );
-            output[1][10] = ::overact::math::wide::signed( // fs_1_right
+            ); // fs_1_right
+            output[1][10] = ::overact::math::wide::signed(
                 g1_vy_right,
                 actuator_velocities[1],
-            );
+            ); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
             output[0][3] = -(minus_g1_vx_left * bias_a1_y_left); // mx_1_leftR
             output[1][3] = -(minus_g1_vy_left * bias_a1_y_left); // mx_1_leftR
@@ -3143,13 +3143,13 @@ impl FiveBar {
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-            output[0][15] = minus_g1_vx_left * inv_l_2_a_on_f2_left // my_2_left
-                - g2_vx_left * a2_x_left;
+            output[0][15] = minus_g1_vx_left * inv_l_2_a_on_f2_left
+                - g2_vx_left * a2_x_left; // my_2_left
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
             output[0][13] = -(g2_vx_left * minus_rate_dot_2_left); // zz_2_leftR
-            output[1][15] = minus_g1_vy_left * inv_l_2_a_on_f2_left // my_2_left
-                - g2_vy_left * a2_x_left;
+            output[1][15] = minus_g1_vy_left * inv_l_2_a_on_f2_left
+                - g2_vy_left * a2_x_left; // my_2_left
             // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
@@ -3160,13 +3160,13 @@ impl FiveBar {
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
             let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
-            output[0][16] = minus_g2_vx_right * a2_x_right // my_2_right
-                - g1_vx_right * inv_l_2_a_on_f2_right;
+            output[0][16] = minus_g2_vx_right * a2_x_right
+                - g1_vx_right * inv_l_2_a_on_f2_right; // my_2_right
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t2_right);
             output[0][14] = -(minus_g2_vx_right * rate_dot_2_right); // zz_2_rightR
-            output[1][16] = minus_g2_vy_right * a2_x_right // my_2_right
-                - g1_vy_right * inv_l_2_a_on_f2_right;
+            output[1][16] = minus_g2_vy_right * a2_x_right
+                - g1_vy_right * inv_l_2_a_on_f2_right; // my_2_right
             output[1][13] = -(g2_vy_left * minus_rate_dot_2_left); // zz_2_leftR
             output[1][14] = -(minus_g2_vy_right * rate_dot_2_right); // zz_2_rightR
             let qd_2_right = rate_2_right - actuator_velocities[1];
@@ -3203,10 +3203,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3367,23 +3367,23 @@ impl FiveBar {
             output[1][13] = g2_a2_left * rate_dot_2_left; // zz_2_leftR
             output[0][13] = g2_a1_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][17] = ::overact::math::wide::signed( // fs_2_left
+            output[0][17] = ::overact::math::wide::signed(
                 g2_a1_left - 1.0,
                 qd_2_left,
-            );
+            ); // fs_2_left
             output[1][14] = -(g2_a2_right * minus_rate_dot_2_right); // zz_2_rightR
             output[1][15] = -(g2_a2_left * a2_x_left); // my_2_left
             output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][18] = -::overact::math::wide::signed( // fs_2_right
+            output[0][18] = -::overact::math::wide::signed(
                 g2_a1_right,
                 minus_qd_2_right,
-            );
-            output[1][18] = -::overact::math::wide::signed( // fs_2_right
+            ); // fs_2_right
+            output[1][18] = -::overact::math::wide::signed(
                 g2_a2_right - 1.0,
                 minus_qd_2_right,
-            );
+            ); // fs_2_right
             output[1][10] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
             ::core::result::Result::Ok(())
         })
@@ -3417,10 +3417,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -3598,10 +3598,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3794,17 +3794,17 @@ impl FiveBar {
             output[1][13] = -(g2_a2_left * minus_rate_dot_2_left); // zz_2_leftR
             output[0][14] = g2_a1_right * rate_dot_2_right; // zz_2_rightR
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][17] = ::overact::math::wide::signed( // fs_2_left
+            output[0][17] = ::overact::math::wide::signed(
                 g2_a1_left - 1.0,
                 qd_2_left,
-            );
+            ); // fs_2_left
             output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let qd_2_right = rate_2_right - actuator_velocities[1];
             output[0][18] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
-            output[1][18] = ::overact::math::wide::signed( // fs_2_right
+            output[1][18] = ::overact::math::wide::signed(
                 g2_a2_right - 1.0,
                 qd_2_right,
-            );
+            ); // fs_2_right
             ::core::result::Result::Ok(())
         })
     }

@@ -31,7 +31,7 @@
 /// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 6 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
 ///
 /// # Names
 ///
@@ -495,10 +495,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -605,8 +605,8 @@ impl Rx90 {
             output[1][6] = w2_x_squared_arm - w2_y_squared_arm; // xy_2
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
             let u2_xy_arm = minus_xx_2_on_q2 - joint_accelerations[1];
-            output[0][9] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm) // yz_2
-                - c2_arm * u2_xy_arm;
+            output[0][9] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+                - c2_arm * u2_xy_arm; // yz_2
             let u2_yx_arm = minus_xx_2_on_q2 + joint_accelerations[1];
             let xz_2_on_q1 = s2_arm * u2_yx_arm
                 + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
@@ -676,16 +676,16 @@ impl Rx90 {
             output[2][18] = xy_3_on_q2;
             let u3_yx_arm = minus_xx_3_on_q2 + wd3_z_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-            output[0][19] = s23_arm * u3_yx_arm // xz_3
-                + c23_arm * (w3_z_squared_arm - w3_x_squared_arm);
+            output[0][19] = s23_arm * u3_yx_arm
+                + c23_arm * (w3_z_squared_arm - w3_x_squared_arm); // xz_3
             let v3_by_2_y_arm = D3 * c3_arm;
             let v3_by_2_x_arm = D3 * s3_arm;
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-            output[1][23] = v3_by_2_y_arm * u3_yx_arm // mx_3
-                - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm;
+            output[1][23] = v3_by_2_y_arm * u3_yx_arm
+                - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm; // mx_3
             let u3_xy_arm = minus_xx_3_on_q2 - wd3_z_arm;
-            output[0][21] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm) // yz_3
-                - c23_arm * u3_xy_arm;
+            output[0][21] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+                - c23_arm * u3_xy_arm; // yz_3
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let d3_u3_xy_arm = D3 * u3_xy_arm;
             let t3_arm = s3_arm * d3_u3_xy_arm - v3_by_2_y_arm * minus_u3_yy_arm;
@@ -760,22 +760,22 @@ impl Rx90 {
             let t5_arm = w4_y_squared_arm - w4_z_squared_arm;
             let minus_xy_4_on_q4 = u3_yy_minus_u4_xx_arm + t5_arm;
             output[3][32] = -minus_xy_4_on_q4; // xy_4
-            output[0][32] = -(c23_arm * minus_xy_4_on_q4 // xy_4
-                + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2));
+            output[0][32] = -(c23_arm * minus_xy_4_on_q4
+                + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2)); // xy_4
             let w4_by_1_x_arm = s23_arm * c4_arm;
             let w5_by_1_z_arm = s23_arm * s4_arm;
             let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-            output[0][33] = w4_by_1_x_arm * u4_yx_arm // xz_4
-                - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm + c23_arm * minus_u4_yz_arm;
+            output[0][33] = w4_by_1_x_arm * u4_yx_arm
+                - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm + c23_arm * minus_u4_yz_arm; // xz_4
             let s4_u4_yx_arm = s4_arm * u4_yx_arm;
             let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * u3_yy_minus_u4_xx_arm;
             output[1][33] = -minus_xz_4_on_q2; // xz_4
             output[2][33] = -minus_xz_4_on_q2; // xz_4
             let minus_v4_by_1_x_arm = s4_arm * t1_arm;
             let v5_by_1_z_arm = c4_arm * t1_arm;
-            output[0][37] = minus_v4_by_1_x_arm * minus_u4_xx_arm // mx_4
+            output[0][37] = minus_v4_by_1_x_arm * minus_u4_xx_arm
                 - v5_by_1_z_arm * u4_yx_arm + w5_by_1_z_arm * a4_z_arm
-                - c23_arm * a5_z_arm;
+                - c23_arm * a5_z_arm; // mx_4
             let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
             let minus_u4_yy_arm = minus_u4_xx_arm - minus_xy_4_on_q4;
             let my_4_on_q1 = minus_v4_by_1_x_arm * minus_u4_xy_arm
@@ -794,8 +794,8 @@ impl Rx90 {
             output[0][36] = zz_4_on_q1;
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
             output[3][35] = u4_xz_arm; // yz_4
-            output[0][35] = w4_by_1_x_arm * t5_arm - w5_by_1_z_arm * minus_u4_xy_arm // yz_4
-                + c23_arm * u4_xz_arm;
+            output[0][35] = w4_by_1_x_arm * t5_arm - w5_by_1_z_arm * minus_u4_xy_arm
+                + c23_arm * u4_xz_arm; // yz_4
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
             let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
             output[1][32] = xy_4_on_q2;
@@ -803,8 +803,8 @@ impl Rx90 {
             let minus_v4_by_3_x_arm = D3 * c4_arm;
             let t6_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
             let c4_a4_z_arm = c4_arm * a4_z_arm;
-            output[1][37] = v3_by_2_y_arm * u4_zx_arm + t6_arm * t4_arm // mx_4
-                + c4_a4_z_arm;
+            output[1][37] = v3_by_2_y_arm * u4_zx_arm + t6_arm * t4_arm
+                + c4_a4_z_arm; // mx_4
             output[2][37] = t6_arm + c4_a4_z_arm; // mx_4
             let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
             let minus_yz_4_on_q2 = s4_arm * t5_arm + minus_c4_u4_xy_arm;
@@ -866,12 +866,12 @@ impl Rx90 {
                 + c4_arm * xy_5_on_q5;
             output[1][46] = xy_5_on_q2;
             output[2][46] = xy_5_on_q2;
-            output[0][46] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm // xy_5
-                + w5_by_1_z_arm * xy_5_on_q5;
+            output[0][46] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                + w5_by_1_z_arm * xy_5_on_q5; // xy_5
             let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
             let t9_arm = xy_5_on_q5 + t8_arm;
-            output[0][47] = w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm // xz_5
-                - w5_by_1_z_arm * u5_yz_arm;
+            output[0][47] = w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm
+                - w5_by_1_z_arm * u5_yz_arm; // xz_5
             output[3][47] = s5_arm * u5_yx_arm - c5_arm * t9_arm; // xz_5
             let w5_by_2_y_arm = s4_arm * s5_arm;
             let minus_w5_by_2_x_arm = s4_arm * c5_arm;
@@ -892,8 +892,8 @@ impl Rx90 {
             output[1][48] = -minus_yy_5_on_q2; // yy_5
             output[2][48] = -minus_yy_5_on_q2; // yy_5
             let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-            output[0][49] = w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm // yz_5
-                + w5_by_1_z_arm * u5_xz_arm;
+            output[0][49] = w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+                + w5_by_1_z_arm * u5_xz_arm; // yz_5
             let yz_5_on_q2 = c4_arm * u5_xz_arm
                 - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
             output[1][49] = yz_5_on_q2;
@@ -901,9 +901,9 @@ impl Rx90 {
             output[3][49] = s5_arm * t8_arm - c5_arm * u5_xy_arm; // yz_5
             let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
             let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-            output[0][51] = minus_v5_by_1_x_arm * minus_u5_xx_arm // mx_5
+            output[0][51] = minus_v5_by_1_x_arm * minus_u5_xx_arm
                 + v5_by_1_y_arm * u5_yx_arm + v5_by_1_z_arm * u5_zx_arm
-                + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm;
+                + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm; // mx_5
             let my_5_on_q1 = v5_by_1_z_arm * u5_zy_arm
                 - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
                 + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
@@ -922,15 +922,15 @@ impl Rx90 {
             let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
             let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
                 - a5_z_arm * w5_by_2_y_arm;
-            output[2][51] = minus_v5_by_3_x_arm * minus_u5_xx_arm // mx_5
+            output[2][51] = minus_v5_by_3_x_arm * minus_u5_xx_arm
                 + v5_by_3_y_arm * u5_yx_arm - v4_by_3_y_u5_zx_arm
-                + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
+                + c4_a5_y_minus_a5_z_w5_by_2_y_arm; // mx_5
             let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t4_arm;
             let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm
                 - minus_v5_by_3_x_arm * t4_arm;
-            output[1][51] = v5_by_2_y_arm * u5_yx_arm // mx_5
+            output[1][51] = v5_by_2_y_arm * u5_yx_arm
                 - v5_by_2_x_arm * minus_u5_xx_arm - v4_by_3_y_u5_zx_arm * t4_arm
-                + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
+                + c4_a5_y_minus_a5_z_w5_by_2_y_arm; // mx_5
             let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
             let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
                 + c4_arm * a5_x_arm;
@@ -959,8 +959,8 @@ impl Rx90 {
             let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
             let minus_xy_6_on_q6 = t10_arm + u6_yy_minus_u5_yy_arm;
             output[5][60] = -minus_xy_6_on_q6; // xy_6
-            output[3][60] = -(c5_arm * minus_xy_6_on_q6 // xy_6
-                + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5));
+            output[3][60] = -(c5_arm * minus_xy_6_on_q6
+                + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5)); // xy_6
             let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
             let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm
                 + w5_by_1_z_arm * c6_arm;
@@ -968,8 +968,8 @@ impl Rx90 {
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
             let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-            output[0][60] = -(w5_by_1_y_arm * minus_xy_6_on_q6 // xy_6
-                + w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm);
+            output[0][60] = -(w5_by_1_y_arm * minus_xy_6_on_q6
+                + w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm); // xy_6
             output[4][60] = s6_arm * u6_zx_arm - c6_arm * u6_zy_arm; // xy_6
             let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
             let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
@@ -982,18 +982,18 @@ impl Rx90 {
                 - minus_w6_by_1_y_w6_x_w6_z_arm + w5_by_1_y_arm * xx_6_on_q6;
             output[0][59] = xx_6_on_q1;
             output[0][62] = zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1; // yy_6
-            output[0][64] = minus_w6_by_1_y_w6_x_w6_z_arm // zz_6
-                - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm;
+            output[0][64] = minus_w6_by_1_y_w6_x_w6_z_arm
+                - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm; // zz_6
             let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
             output[5][63] = u6_xz_arm; // yz_6
             let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
             output[4][61] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm); // xz_6
             let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
             output[5][61] = minus_u6_yz_arm; // xz_6
-            output[0][61] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm // xz_6
-                + w5_by_1_y_arm * minus_u6_yz_arm;
-            output[3][61] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm // xz_6
-                + c5_arm * minus_u6_yz_arm;
+            output[0][61] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                + w5_by_1_y_arm * minus_u6_yz_arm; // xz_6
+            output[3][61] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                + c5_arm * minus_u6_yz_arm; // xz_6
             let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
                 - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
             output[1][61] = xz_6_on_q2;
@@ -1001,24 +1001,24 @@ impl Rx90 {
             let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
             let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
             let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
-            output[0][65] = minus_v6_by_1_x_arm * minus_u6_xx_arm // mx_6
+            output[0][65] = minus_v6_by_1_x_arm * minus_u6_xx_arm
                 + v6_by_1_y_arm * u6_yx_arm + v5_by_1_y_arm * u6_zx_arm
-                + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm;
+                + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm; // mx_6
             let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-            output[0][66] = minus_v6_by_1_x_arm * minus_u6_xy_arm // my_6
+            output[0][66] = minus_v6_by_1_x_arm * minus_u6_xy_arm
                 - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
-                + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm;
-            output[0][63] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm // yz_6
-                - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm;
-            output[3][63] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm // yz_6
-                - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm;
+                + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm; // my_6
+            output[0][63] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm; // yz_6
+            output[3][63] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm; // yz_6
             let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
             let xx_6_on_q4 = wd6_x_arm * w6_by_4_x_arm
                 - minus_w6_by_4_y_w6_x_w6_z_arm + c5_arm * xx_6_on_q6;
             output[3][59] = xx_6_on_q4;
             output[3][62] = s5_u5_zy_arm - xx_6_on_q4; // yy_6
-            output[3][64] = minus_w6_by_4_y_w6_x_w6_z_arm // zz_6
-                - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm;
+            output[3][64] = minus_w6_by_4_y_w6_x_w6_z_arm
+                - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm; // zz_6
             let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
             let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm
                 - wd6_x_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * xx_6_on_q6;
@@ -1036,29 +1036,29 @@ impl Rx90 {
                 + w5_by_2_y_arm * u6_xz_arm;
             output[1][63] = yz_6_on_q2;
             output[2][63] = yz_6_on_q2;
-            output[4][63] = -(s6_arm * u6_yy_minus_u5_yy_arm // yz_6
-                + c6_arm * minus_u6_xy_arm);
+            output[4][63] = -(s6_arm * u6_yy_minus_u5_yy_arm
+                + c6_arm * minus_u6_xy_arm); // yz_6
             let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
             let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t4_arm;
             let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
             let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
                 - c6_v4_by_3_y_arm * t4_arm;
             let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-            output[1][65] = v5_by_2_y_arm * u6_zx_arm // mx_6
+            output[1][65] = v5_by_2_y_arm * u6_zx_arm
                 - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
-                - t11_arm;
+                - t11_arm; // mx_6
             let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
             let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-            output[2][65] = v6_by_3_y_arm * u6_yx_arm // mx_6
+            output[2][65] = v6_by_3_y_arm * u6_yx_arm
                 - v6_by_3_x_arm * minus_u6_xx_arm + v5_by_3_y_arm * u6_zx_arm
-                - t11_arm;
+                - t11_arm; // mx_6
             let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-            output[1][66] = minus_v6_by_2_y_arm * minus_u6_yy_arm // my_6
+            output[1][66] = minus_v6_by_2_y_arm * minus_u6_yy_arm
                 - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
-                - t12_arm;
-            output[2][66] = v5_by_3_y_arm * u6_zy_arm // my_6
+                - t12_arm; // my_6
+            output[2][66] = v5_by_3_y_arm * u6_zy_arm
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
-                - t12_arm;
+                - t12_arm; // my_6
             ::core::result::Result::Ok(())
         })
     }
@@ -1088,10 +1088,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1188,11 +1188,11 @@ impl Rx90 {
             output[1][31] = w2_x_squared_arm - w2_y_squared_arm; // xy_2
             let u2_yx_arm = yy_2_on_q2 + joint_accelerations[1];
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-            output[0][28] = s2_arm * u2_yx_arm // xz_2R
-                + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
+            output[0][28] = s2_arm * u2_yx_arm
+                + c2_arm * (rate_2_squared_arm - w2_x_squared_arm); // xz_2R
             let u2_xy_arm = yy_2_on_q2 - joint_accelerations[1];
-            output[0][30] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm) // yz_2
-                - c2_arm * u2_xy_arm;
+            output[0][30] = s2_arm * (w2_y_squared_arm - rate_2_squared_arm)
+                - c2_arm * u2_xy_arm; // yz_2
             let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
             let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
             let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
@@ -1238,17 +1238,17 @@ impl Rx90 {
             output[2][35] = -minus_m_4_on_q3; // m_4R
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-            output[0][34] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm) // yz_3
-                - c23_arm * u3_xy_arm;
+            output[0][34] = s23_arm * (w3_y_squared_arm - w3_z_squared_arm)
+                - c23_arm * u3_xy_arm; // yz_3
             let u3_yx_arm = yy_3_on_q2 + wd3_z_arm;
             let v3_by_2_y_arm = D3 * c3_arm;
             let v3_by_2_x_arm = D3 * s3_arm;
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-            output[1][41] = v3_by_2_y_arm * u3_yx_arm // mx_3
-                - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm;
+            output[1][41] = v3_by_2_y_arm * u3_yx_arm
+                - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm; // mx_3
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-            output[0][33] = s23_arm * u3_yx_arm // xz_3
-                + c23_arm * (w3_z_squared_arm - w3_x_squared_arm);
+            output[0][33] = s23_arm * u3_yx_arm
+                + c23_arm * (w3_z_squared_arm - w3_x_squared_arm); // xz_3
             let t3_arm = 1.0 - s3_arm;
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
@@ -1304,10 +1304,10 @@ impl Rx90 {
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
             let w4_by_1_x_arm = s23_arm * c4_arm;
-            output[0][36] = w5_by_1_z_w4_x_w4_z_arm // zz_4R
-                - w4_by_1_x_arm * minus_w4_y_w4_z_arm + c23_arm * wd4_z_arm;
-            output[0][37] = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm // xx_4R
-                + c23_arm * xx_4_on_q4;
+            output[0][36] = w5_by_1_z_w4_x_w4_z_arm
+                - w4_by_1_x_arm * minus_w4_y_w4_z_arm + c23_arm * wd4_z_arm; // zz_4R
+            output[0][37] = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+                + c23_arm * xx_4_on_q4; // xx_4R
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
             output[3][38] = u4_xz_arm; // yz_4
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
@@ -1318,36 +1318,36 @@ impl Rx90 {
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let t4_arm = w4_z_squared_arm - w4_x_squared_arm;
             let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
-            output[0][39] = w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm // xz_4
-                + c23_arm * minus_u4_yz_arm;
+            output[0][39] = w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm
+                + c23_arm * minus_u4_yz_arm; // xz_4
             let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
             let minus_u4_xx_arm = t4_arm + minus_u3_yy_arm;
             let xy_4_on_q4 = minus_u4_yy_arm - minus_u4_xx_arm;
             output[3][40] = xy_4_on_q4;
             let t5_arm = t4_arm + xy_4_on_q4;
             let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
-            output[0][38] = c23_arm * u4_xz_arm // yz_4
-                - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm);
-            output[0][40] = c23_arm * xy_4_on_q4 // xy_4
-                - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm);
+            output[0][38] = c23_arm * u4_xz_arm
+                - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm); // yz_4
+            output[0][40] = c23_arm * xy_4_on_q4
+                - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm); // xy_4
             let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
             let minus_yz_4_on_q2 = minus_c4_u4_xy_arm - s4_arm * t5_arm;
             output[1][38] = -minus_yz_4_on_q2; // yz_4
             output[2][38] = -minus_yz_4_on_q2; // yz_4
             let minus_v4_by_1_x_arm = s4_arm * t2_arm;
             let v5_by_1_z_arm = c4_arm * t2_arm;
-            output[0][44] = minus_v4_by_1_x_arm * minus_u4_xy_arm // my_4R
+            output[0][44] = minus_v4_by_1_x_arm * minus_u4_xy_arm
                 + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
-                - c23_arm * a4_x_arm;
+                - c23_arm * a4_x_arm; // my_4R
             let v4_by_3_y_arm = D3 * s4_arm;
             let t6_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
             let s4_a4_z_arm = s4_arm * a4_z_arm;
-            output[1][44] = t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm // my_4R
-                - s4_a4_z_arm;
+            output[1][44] = t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm
+                - s4_a4_z_arm; // my_4R
             output[2][44] = t6_arm - s4_a4_z_arm; // my_4R
-            output[0][51] = minus_v4_by_1_x_arm * minus_u4_xx_arm // mx_4
+            output[0][51] = minus_v4_by_1_x_arm * minus_u4_xx_arm
                 - v5_by_1_z_arm * u4_yx_arm + w5_by_1_z_arm * a4_z_arm
-                - c23_arm * a5_z_arm;
+                - c23_arm * a5_z_arm; // mx_4
             let s4_u4_yx_arm = s4_arm * u4_yx_arm;
             let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * t4_arm;
             output[1][39] = -minus_xz_4_on_q2; // xz_4
@@ -1355,8 +1355,8 @@ impl Rx90 {
             let minus_v4_by_3_x_arm = D3 * c4_arm;
             let t7_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
             let c4_a4_z_arm = c4_arm * a4_z_arm;
-            output[1][51] = v3_by_2_y_arm * u4_zx_arm + t7_arm * t3_arm // mx_4
-                + c4_a4_z_arm;
+            output[1][51] = v3_by_2_y_arm * u4_zx_arm + t7_arm * t3_arm
+                + c4_a4_z_arm; // mx_4
             output[2][51] = t7_arm + c4_a4_z_arm; // mx_4
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
@@ -1377,10 +1377,10 @@ impl Rx90 {
             let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
-            output[0][42] = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm // zz_5R
-                + w5_by_1_z_arm * wd5_z_arm;
-            output[0][43] = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm // xx_5R
-                - w5_by_1_z_arm * minus_xx_5_on_q5;
+            output[0][42] = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+                + w5_by_1_z_arm * wd5_z_arm; // zz_5R
+            output[0][43] = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+                - w5_by_1_z_arm * minus_xx_5_on_q5; // xx_5R
             let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
             output[3][45] = c5_arm * u5_zy_arm - s5_arm * u5_zx_arm; // xy_5
             let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
@@ -1403,8 +1403,8 @@ impl Rx90 {
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let xy_5_on_q5 = w5_x_squared_arm - w5_y_squared_arm;
             output[4][45] = xy_5_on_q5;
-            output[0][45] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm // xy_5
-                + w5_by_1_z_arm * xy_5_on_q5;
+            output[0][45] = w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                + w5_by_1_z_arm * xy_5_on_q5; // xy_5
             let xy_5_on_q2 = minus_w5_by_2_x_arm * u5_zx_arm
                 + w5_by_2_y_arm * u5_zy_arm + c4_arm * xy_5_on_q5;
             output[1][45] = xy_5_on_q2;
@@ -1423,8 +1423,8 @@ impl Rx90 {
             let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
             let t8_arm = w5_z_squared_arm - w5_x_squared_arm;
-            output[0][46] = w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t8_arm // xz_5
-                - w5_by_1_z_arm * u5_yz_arm;
+            output[0][46] = w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t8_arm
+                - w5_by_1_z_arm * u5_yz_arm; // xz_5
             let xz_5_on_q2 = w5_by_2_y_arm * t8_arm - minus_w5_by_2_x_arm * u5_yx_arm
                 - c4_arm * u5_yz_arm;
             output[1][46] = xz_5_on_q2;
@@ -1432,8 +1432,8 @@ impl Rx90 {
             output[3][46] = s5_arm * u5_yx_arm + c5_arm * t8_arm; // xz_5
             let t9_arm = w5_y_squared_arm - w5_z_squared_arm;
             let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
-            output[0][47] = w5_by_1_x_arm * t9_arm - w5_by_1_y_arm * u5_xy_arm // yz_5
-                + w5_by_1_z_arm * u5_xz_arm;
+            output[0][47] = w5_by_1_x_arm * t9_arm - w5_by_1_y_arm * u5_xy_arm
+                + w5_by_1_z_arm * u5_xz_arm; // yz_5
             let yz_5_on_q2 = c4_arm * u5_xz_arm
                 - (minus_w5_by_2_x_arm * t9_arm + w5_by_2_y_arm * u5_xy_arm);
             output[1][47] = yz_5_on_q2;
@@ -1442,13 +1442,13 @@ impl Rx90 {
             let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
             let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
             let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-            output[0][50] = v5_by_1_z_arm * u5_zy_arm // my_5R
+            output[0][50] = v5_by_1_z_arm * u5_zy_arm
                 - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
-                + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
+                + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm; // my_5R
             let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-            output[0][55] = minus_v5_by_1_x_arm * minus_u5_xx_arm // mx_5
+            output[0][55] = minus_v5_by_1_x_arm * minus_u5_xx_arm
                 + v5_by_1_y_arm * u5_yx_arm + v5_by_1_z_arm * u5_zx_arm
-                + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm;
+                + w5_by_1_z_arm * a5_y_arm - w5_by_1_y_arm * a5_z_arm; // mx_5
             let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
             let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm
                 - minus_v5_by_3_x_arm * t3_arm;
@@ -1457,21 +1457,21 @@ impl Rx90 {
             let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
             let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
                 + c4_arm * a5_x_arm;
-            output[1][50] = v5_by_2_x_arm * u5_xy_arm // my_5R
+            output[1][50] = v5_by_2_x_arm * u5_xy_arm
                 - v5_by_2_y_arm * minus_u5_yy_arm - v4_by_3_y_u5_zy_arm * t3_arm
-                - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
-            output[2][50] = -(minus_v5_by_3_x_arm * u5_xy_arm // my_5R
+                - c4_a5_x_minus_a5_z_w5_by_2_x_arm; // my_5R
+            output[2][50] = -(minus_v5_by_3_x_arm * u5_xy_arm
                 + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
-                + c4_a5_x_minus_a5_z_w5_by_2_x_arm);
+                + c4_a5_x_minus_a5_z_w5_by_2_x_arm); // my_5R
             let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
             let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
                 - a5_z_arm * w5_by_2_y_arm;
-            output[1][55] = v5_by_2_y_arm * u5_yx_arm // mx_5
+            output[1][55] = v5_by_2_y_arm * u5_yx_arm
                 - v5_by_2_x_arm * minus_u5_xx_arm - v4_by_3_y_u5_zx_arm * t3_arm
-                + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
-            output[2][55] = minus_v5_by_3_x_arm * minus_u5_xx_arm // mx_5
+                + c4_a5_y_minus_a5_z_w5_by_2_y_arm; // mx_5
+            output[2][55] = minus_v5_by_3_x_arm * minus_u5_xx_arm
                 + v5_by_3_y_arm * u5_yx_arm - v4_by_3_y_u5_zx_arm
-                + c4_a5_y_minus_a5_z_w5_by_2_y_arm;
+                + c4_a5_y_minus_a5_z_w5_by_2_y_arm; // mx_5
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
@@ -1483,15 +1483,15 @@ impl Rx90 {
                 + w5_by_1_z_arm * c6_arm;
             let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
             let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-            output[0][48] = minus_w6_by_1_y_w6_x_w6_z_arm // zz_6
-                - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm;
-            output[0][49] = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm // xx_6R
-                + w5_by_1_y_arm * xx_6_on_q6;
+            output[0][48] = minus_w6_by_1_y_w6_x_w6_z_arm
+                - w6_by_1_x_arm * minus_w6_y_w6_z_arm + w5_by_1_y_arm * wd6_z_arm; // zz_6
+            output[0][49] = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
+                + w5_by_1_y_arm * xx_6_on_q6; // xx_6R
             let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
-            output[3][48] = minus_w6_by_4_y_w6_x_w6_z_arm // zz_6
-                - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm;
-            output[3][49] = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm // xx_6R
-                + c5_arm * xx_6_on_q6;
+            output[3][48] = minus_w6_by_4_y_w6_x_w6_z_arm
+                - w6_by_4_x_arm * minus_w6_y_w6_z_arm + c5_arm * wd6_z_arm; // zz_6
+            output[3][49] = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
+                + c5_arm * xx_6_on_q6; // xx_6R
             let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
             let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
             let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
@@ -1507,69 +1507,69 @@ impl Rx90 {
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let w6_x_squared_arm = w6_x_arm * w6_x_arm;
             let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
-            output[0][52] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm // xz_6
-                + w5_by_1_y_arm * minus_u6_yz_arm;
+            output[0][52] = w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                + w5_by_1_y_arm * minus_u6_yz_arm; // xz_6
             let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
             let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
             let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
-            output[0][53] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm // yz_6
-                - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm;
-            output[3][52] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm // xz_6
-                + c5_arm * minus_u6_yz_arm;
+            output[0][53] = w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm; // yz_6
+            output[3][52] = w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                + c5_arm * minus_u6_yz_arm; // xz_6
             let xz_6_on_q2 = w6_by_2_y_arm * t10_arm
                 - minus_w6_by_2_x_arm * u6_yx_arm + w5_by_2_y_arm * minus_u6_yz_arm;
             output[1][52] = xz_6_on_q2;
             output[2][52] = xz_6_on_q2;
             output[4][52] = -(s6_arm * u6_yx_arm + c6_arm * t10_arm); // xz_6
-            output[3][53] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm // yz_6
-                - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm;
+            output[3][53] = w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm; // yz_6
             let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
             let xy_6_on_q6 = minus_u6_yy_arm - minus_u6_xx_arm;
             output[5][54] = xy_6_on_q6;
-            output[3][54] = c5_arm * xy_6_on_q6 // xy_6
-                - (w6_by_4_x_arm * u6_zx_arm + minus_w6_by_4_y_arm * u6_zy_arm);
+            output[3][54] = c5_arm * xy_6_on_q6
+                - (w6_by_4_x_arm * u6_zx_arm + minus_w6_by_4_y_arm * u6_zy_arm); // xy_6
             let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
                 - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm
                 + w5_by_2_y_arm * u6_xz_arm;
             output[1][53] = yz_6_on_q2;
             output[2][53] = yz_6_on_q2;
-            output[4][53] = -(s6_arm * u6_yy_minus_u5_yy_arm // yz_6
-                + c6_arm * minus_u6_xy_arm);
-            output[0][54] = w5_by_1_y_arm * xy_6_on_q6 // xy_6
-                - (w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm);
+            output[4][53] = -(s6_arm * u6_yy_minus_u5_yy_arm
+                + c6_arm * minus_u6_xy_arm); // yz_6
+            output[0][54] = w5_by_1_y_arm * xy_6_on_q6
+                - (w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm); // xy_6
             let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm
                 + w6_by_2_y_arm * u6_zy_arm + w5_by_2_y_arm * xy_6_on_q6;
             output[1][54] = xy_6_on_q2;
             output[2][54] = xy_6_on_q2;
             let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
             let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
-            output[0][56] = minus_v6_by_1_x_arm * minus_u6_xx_arm // mx_6
+            output[0][56] = minus_v6_by_1_x_arm * minus_u6_xx_arm
                 + v6_by_1_y_arm * u6_yx_arm + v5_by_1_y_arm * u6_zx_arm
-                + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm;
-            output[0][57] = minus_v6_by_1_x_arm * minus_u6_xy_arm // my_6
+                + minus_w6_by_1_y_arm * a5_y_arm - w5_by_1_y_arm * minus_a6_y_arm; // mx_6
+            output[0][57] = minus_v6_by_1_x_arm * minus_u6_xy_arm
                 - v6_by_1_y_arm * minus_u6_yy_arm + v5_by_1_y_arm * u6_zy_arm
-                + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm;
+                + w6_by_1_x_arm * a5_y_arm - w5_by_1_y_arm * a6_x_arm; // my_6
             let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
             let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t3_arm;
             let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
             let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm
                 - c6_v4_by_3_y_arm * t3_arm;
             let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
-            output[1][56] = v5_by_2_y_arm * u6_zx_arm // mx_6
+            output[1][56] = v5_by_2_y_arm * u6_zx_arm
                 - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
-                - t11_arm;
+                - t11_arm; // mx_6
             let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
             let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-            output[2][56] = v6_by_3_y_arm * u6_yx_arm // mx_6
+            output[2][56] = v6_by_3_y_arm * u6_yx_arm
                 - v6_by_3_x_arm * minus_u6_xx_arm + v5_by_3_y_arm * u6_zx_arm
-                - t11_arm;
+                - t11_arm; // mx_6
             let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-            output[1][57] = minus_v6_by_2_y_arm * minus_u6_yy_arm // my_6
+            output[1][57] = minus_v6_by_2_y_arm * minus_u6_yy_arm
                 - v6_by_2_x_arm * minus_u6_xy_arm + v5_by_2_y_arm * u6_zy_arm
-                - t12_arm;
-            output[2][57] = v5_by_3_y_arm * u6_zy_arm // my_6
+                - t12_arm; // my_6
+            output[2][57] = v5_by_3_y_arm * u6_zy_arm
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
-                - t12_arm;
+                - t12_arm; // my_6
             ::core::result::Result::Ok(())
         })
     }

@@ -56,7 +56,7 @@
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.
+/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
 ///
 /// # Names
 ///
@@ -1501,10 +1501,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1584,10 +1584,10 @@ impl ThreeLegPoint {
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = -::overact::math::wide::signed( // fs_1_leg2
+            output[1][13] = -::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             // --- leg3
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -1604,10 +1604,10 @@ impl ThreeLegPoint {
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -1621,10 +1621,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][3] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -1653,10 +1653,10 @@ impl ThreeLegPoint {
             output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1); // my_2_leg1
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
             output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
             output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
@@ -1665,8 +1665,8 @@ impl ThreeLegPoint {
             output[0][9] = pose[0] * t1_leg1; // fs_2_leg1
             output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * acceleration[1];
-            output[1][6] = inv_l_1_dvy // mx_2_leg1
-                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy); // mx_2_leg1
             output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
@@ -1684,8 +1684,8 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
             output[0][19] = -(t3_leg2 * t4_leg2); // fs_2_leg2
@@ -1700,10 +1700,10 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
-            output[0][16] = inv_l_1_dvx // mx_2_leg2
-                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
-            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
-                + minus_g1_vy_leg2 * a_on_f2_leg2);
+            output[0][16] = inv_l_1_dvx
+                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx); // mx_2_leg2
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+                + minus_g1_vy_leg2 * a_on_f2_leg2); // my_2_leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
             output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
@@ -1743,17 +1743,17 @@ impl ThreeLegPoint {
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][29] = -(t4_leg3 * t5_leg3); // fs_2_leg3
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                + g1_vx_leg3 * minus_a_on_f2_leg3;
-            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
-                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
             output[1][20] = -minus_zz_1_leg3_on_vy; // zz_1_leg3
             output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[1][26] = inv_l_1_dvy // mx_2_leg3
-                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy); // mx_2_leg3
             output[1][29] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
@@ -1789,10 +1789,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -1835,10 +1835,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][3] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
@@ -1852,8 +1852,8 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
-            output[0][7] = g2_vx_leg1 * a_on_f1_leg1 // my_2_leg1
-                - minus_g1_vx_leg1 * a_on_f2_leg1;
+            output[0][7] = g2_vx_leg1 * a_on_f1_leg1
+                - minus_g1_vx_leg1 * a_on_f2_leg1; // my_2_leg1
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
             output[0][9] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
@@ -1867,15 +1867,15 @@ impl ThreeLegPoint {
             let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = -minus_zz_2_leg1_on_vx; // zz_2_leg1
             let inv_l_1_dvx = INV_L_1 * acceleration[0];
-            output[0][6] = inv_l_1_dvx // mx_2_leg1
-                - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx);
-            output[1][7] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * a_on_f1_leg1;
+            output[0][6] = inv_l_1_dvx
+                - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx); // mx_2_leg1
+            output[1][7] = g1_vy_leg1 * a_on_f2_leg1
+                - minus_g2_vy_leg1 * a_on_f1_leg1; // my_2_leg1
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][9] = -::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
             output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
             output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
@@ -1883,8 +1883,8 @@ impl ThreeLegPoint {
             output[1][5] = zz_2_leg1_on_vy;
             output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * acceleration[1];
-            output[1][6] = inv_l_1_dvy // mx_2_leg1
-                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy); // mx_2_leg1
             output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -1900,10 +1900,10 @@ impl ThreeLegPoint {
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = -::overact::math::wide::signed( // fs_1_leg2
+            output[1][13] = -::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -1927,18 +1927,18 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
-            output[0][16] = inv_l_1_dvx // mx_2_leg2
-                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx);
+            output[0][16] = inv_l_1_dvx
+                - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx); // mx_2_leg2
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][19] = -::overact::math::wide::signed(
                 minus_gq2_vx_leg2,
                 qd_2_leg2,
-            );
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                - minus_g2_vx_leg2 * a_on_f1_leg2;
-            output[1][17] = g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
-                - minus_g1_vy_leg2 * a_on_f2_leg2;
+            ); // fs_2_leg2
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+                - minus_g1_vy_leg2 * a_on_f2_leg2; // my_2_leg2
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
             output[1][19] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
@@ -1946,8 +1946,8 @@ impl ThreeLegPoint {
             output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
             let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = -minus_zz_2_leg2_on_vy; // zz_2_leg2
-            output[1][16] = inv_l_1_dvy // mx_2_leg2
-                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
+            output[1][16] = inv_l_1_dvy
+                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy); // mx_2_leg2
             output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx); // m_2_leg2
             output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             // --- leg3
@@ -1964,10 +1964,10 @@ impl ThreeLegPoint {
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -1991,25 +1991,25 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
             let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
             output[0][25] = -minus_zz_2_leg3_on_vx; // zz_2_leg3
-            output[0][26] = inv_l_1_dvx // mx_2_leg3
-                - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx);
+            output[0][26] = inv_l_1_dvx
+                - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx); // mx_2_leg3
             let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
             output[1][20] = -minus_zz_1_leg3_on_vy; // zz_1_leg3
             output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[1][26] = inv_l_1_dvy // mx_2_leg3
-                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy); // mx_2_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][29] = -::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 qd_2_leg3,
-            );
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                - g1_vx_leg3 * a_on_f2_leg3;
-            output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
-                - g2_vy_leg3 * a_on_f1_leg3;
+            ); // fs_2_leg3
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                - g1_vx_leg3 * a_on_f2_leg3; // my_2_leg3
+            output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3
+                - g2_vy_leg3 * a_on_f1_leg3; // my_2_leg3
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
             output[1][29] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
@@ -2047,10 +2047,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2187,10 +2187,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][3] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
@@ -2201,10 +2201,10 @@ impl ThreeLegPoint {
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][23] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -2281,16 +2281,16 @@ impl ThreeLegPoint {
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
-            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
@@ -2309,10 +2309,10 @@ impl ThreeLegPoint {
             output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1); // my_2_leg1
+            output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             // --- leg2
             let rate_dot_1_leg2 = k_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
@@ -2335,10 +2335,10 @@ impl ThreeLegPoint {
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_vx;
             output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
-            output[1][17] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
-                - g2_vy_leg2 * minus_a_on_f1_leg2;
-            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
-                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+                - g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
+            output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
             output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
             output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
@@ -2356,13 +2356,13 @@ impl ThreeLegPoint {
             output[1][25] = zz_2_leg3_on_vy;
             output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * dvy;
-            output[1][6] = inv_l_1_dvy // mx_2_leg1
-                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy);
+            output[1][6] = inv_l_1_dvy
+                - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy); // mx_2_leg1
             output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
-            output[1][16] = inv_l_1_dvy // mx_2_leg2
-                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy);
-            output[1][26] = inv_l_1_dvy // mx_2_leg3
-                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy);
+            output[1][16] = inv_l_1_dvy
+                - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy); // mx_2_leg2
+            output[1][26] = inv_l_1_dvy
+                - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy); // mx_2_leg3
             output[0][18] = L_1_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
             output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
@@ -2396,10 +2396,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2536,20 +2536,20 @@ impl ThreeLegPoint {
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            output[1][16] = L_1 // mx_2_leg2
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t1_platform;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t1_platform; // mx_2_leg2
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][19] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][19] = -::overact::math::wide::signed(
                 minus_g2_a1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
@@ -2577,20 +2577,20 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
-                - t2_platform;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t2_platform; // mx_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][9] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[0][9] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][9] = -::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
@@ -2646,8 +2646,8 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t2_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            output[0][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
             output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
@@ -2655,19 +2655,19 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t1_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
+            output[1][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][29] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][29] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
@@ -2702,10 +2702,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -2802,17 +2802,17 @@ impl ThreeLegPoint {
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
-                - t1_platform;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform; // mx_2_leg1
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
             output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
             output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
-            output[0][9] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][9] = ::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][7] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
@@ -2843,17 +2843,17 @@ impl ThreeLegPoint {
                 - g2_vy_leg2 * minus_vy_by_a2;
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            output[1][16] = L_1 // mx_2_leg2
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
             let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
                 - g2_vy_leg2 * minus_vy_by_a1;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
             output[0][19] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
-            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][19] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = -minus_zz_2_leg2_on_q1_leg1; // zz_2_leg2
@@ -2902,8 +2902,8 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
             let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
             output[1][20] = zz_1_leg3_on_q1_leg2;
             output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
@@ -2911,19 +2911,19 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][29] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][29] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
@@ -2959,10 +2959,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3125,15 +3125,15 @@ impl ThreeLegPoint {
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][9] = -::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][9] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][9] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
@@ -3221,8 +3221,8 @@ impl ThreeLegPoint {
                 + minus_vy_by_a1 * dvy;
             output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) // mx_2_leg1
-                - t1_platform;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform; // mx_2_leg1
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
@@ -3240,8 +3240,8 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1));
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
@@ -3259,8 +3259,8 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a2;
             let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform // mx_2_leg3
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2));
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
@@ -3273,29 +3273,29 @@ impl ThreeLegPoint {
             output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
             let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
             output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            output[1][16] = L_1 // mx_2_leg2
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform;
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][19] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][19] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][19] = -::overact::math::wide::signed(
                 minus_g2_a1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][29] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][29] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][29] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
             output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
@@ -3329,10 +3329,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3412,10 +3412,10 @@ impl ThreeLegPoint {
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][8] = -::overact::math::wide::signed( // fs_1_leg2
+            output[1][8] = -::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             // --- leg3
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -3432,10 +3432,10 @@ impl ThreeLegPoint {
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -3449,10 +3449,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][7] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -3477,10 +3477,10 @@ impl ThreeLegPoint {
             output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1); // my_2_leg1
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
@@ -3499,8 +3499,8 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
             let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
             output[0][20] = -(t3_leg2 * t4_leg2); // fs_2_leg2
@@ -3512,8 +3512,8 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
-            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
-                + minus_g1_vy_leg2 * a_on_f2_leg2);
+            output[1][17] = -(minus_g2_vy_leg2 * a_on_f1_leg2
+                + minus_g1_vy_leg2 * a_on_f2_leg2); // my_2_leg2
             output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             output[1][20] = -(t3_leg3 * t4_leg2); // fs_2_leg2
@@ -3532,8 +3532,8 @@ impl ThreeLegPoint {
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
                 + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
             let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][21] = -(t4_leg3 * t5_leg3); // fs_2_leg3
@@ -3546,8 +3546,8 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
             output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
-                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
@@ -3582,10 +3582,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -3626,10 +3626,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][7] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
@@ -3643,8 +3643,8 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
-            output[0][16] = g2_vx_leg1 * a_on_f1_leg1 // my_2_leg1
-                - minus_g1_vx_leg1 * a_on_f2_leg1;
+            output[0][16] = g2_vx_leg1 * a_on_f1_leg1
+                - minus_g1_vx_leg1 * a_on_f2_leg1; // my_2_leg1
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
             output[0][19] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
@@ -3654,14 +3654,14 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
             output[0][13] = -(g2_vx_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            output[1][16] = g1_vy_leg1 * a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * a_on_f1_leg1;
+            output[1][16] = g1_vy_leg1 * a_on_f2_leg1
+                - minus_g2_vy_leg1 * a_on_f1_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][19] = -::overact::math::wide::signed(
                 minus_gq2_vy_leg1,
                 qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -3677,10 +3677,10 @@ impl ThreeLegPoint {
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
             output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][8] = -::overact::math::wide::signed( // fs_1_leg2
+            output[1][8] = -::overact::math::wide::signed(
                 minus_g1_vy_leg2,
                 rate_1_leg2,
-            );
+            ); // fs_1_leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -3693,14 +3693,14 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                - minus_g2_vx_leg2 * a_on_f1_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][20] = -::overact::math::wide::signed(
                 minus_gq2_vx_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
@@ -3708,8 +3708,8 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
-            output[1][17] = g2_vy_leg2 * a_on_f1_leg2 // my_2_leg2
-                - minus_g1_vy_leg2 * a_on_f2_leg2;
+            output[1][17] = g2_vy_leg2 * a_on_f1_leg2
+                - minus_g1_vy_leg2 * a_on_f2_leg2; // my_2_leg2
             output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
             output[1][20] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
@@ -3728,10 +3728,10 @@ impl ThreeLegPoint {
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -3746,22 +3746,22 @@ impl ThreeLegPoint {
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                - g1_vx_leg3 * a_on_f2_leg3;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                - g1_vx_leg3 * a_on_f2_leg3; // my_2_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = -::overact::math::wide::signed( // fs_2_leg3
+            output[0][21] = -::overact::math::wide::signed(
                 minus_gq2_vx_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
             output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
             output[0][15] = -(minus_g2_vx_leg3 * rate_dot_2_leg3); // zz_2_leg3R
-            output[1][18] = minus_g1_vy_leg3 * a_on_f2_leg3 // my_2_leg3
-                - g2_vy_leg3 * a_on_f1_leg3;
+            output[1][18] = minus_g1_vy_leg3 * a_on_f2_leg3
+                - g2_vy_leg3 * a_on_f1_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
             output[1][21] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
@@ -3799,10 +3799,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3938,10 +3938,10 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed( // fs_1_leg1
+            output[0][7] = -::overact::math::wide::signed(
                 minus_g1_vx_leg1,
                 rate_1_leg1,
-            );
+            ); // fs_1_leg1
             output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
@@ -3952,10 +3952,10 @@ impl ThreeLegPoint {
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
             output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed( // fs_1_leg3
+            output[1][9] = -::overact::math::wide::signed(
                 minus_g1_vy_leg3,
                 rate_1_leg3,
-            );
+            ); // fs_1_leg3
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -4032,16 +4032,16 @@ impl ThreeLegPoint {
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
-            output[0][17] = g1_vx_leg2 * a_on_f2_leg2 // my_2_leg2
-                + minus_g2_vx_leg2 * minus_a_on_f1_leg2;
+            output[0][17] = g1_vx_leg2 * a_on_f2_leg2
+                + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
-            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3 // my_2_leg3
-                + g1_vx_leg3 * minus_a_on_f2_leg3;
+            output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
+                + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             // --- leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
@@ -4067,18 +4067,18 @@ impl ThreeLegPoint {
             output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                + minus_g2_vx_leg1 * minus_a2_x_leg1);
-            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1 // my_2_leg1
-                - minus_g2_vy_leg1 * minus_a2_x_leg1;
+            output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                + minus_g2_vx_leg1 * minus_a2_x_leg1); // my_2_leg1
+            output[1][16] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
+                - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            output[1][17] = g1_vy_leg2 * a_on_f2_leg2 // my_2_leg2
-                - g2_vy_leg2 * minus_a_on_f1_leg2;
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+                - g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             output[1][2] = g1_vy_leg2 * rate_dot_1_leg2; // zz_1_leg2R
             output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
-            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3 // my_2_leg3
-                - minus_g1_vy_leg3 * minus_a_on_f2_leg3;
+            output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
+                - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             ::core::result::Result::Ok(())
@@ -4110,10 +4110,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4215,15 +4215,15 @@ impl ThreeLegPoint {
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            output[1][0] = -(minus_vx_by_a2 * acceleration[0] // m_platformR
-                + minus_vy_by_a2 * acceleration[1]);
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1]); // m_platformR
             output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][5] = rate_1_leg2; // fv_1_leg2
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0] // m_platformR
-                + minus_vy_by_a1 * acceleration[1]);
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]); // m_platformR
             output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
             // --- leg2
             let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
@@ -4254,15 +4254,15 @@ impl ThreeLegPoint {
             output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][20] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][20] = -::overact::math::wide::signed(
                 minus_g2_a1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -4288,15 +4288,15 @@ impl ThreeLegPoint {
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][19] = -::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][19] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             // --- leg3
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -4340,14 +4340,14 @@ impl ThreeLegPoint {
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][21] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
-            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[0][21] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
@@ -4391,10 +4391,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -4458,13 +4458,13 @@ impl ThreeLegPoint {
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
-            output[1][0] = -(minus_vx_by_a2 * acceleration[0] // m_platformR
-                + minus_vy_by_a2 * acceleration[1]);
+            output[1][0] = -(minus_vx_by_a2 * acceleration[0]
+                + minus_vy_by_a2 * acceleration[1]); // m_platformR
             output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
-            output[0][0] = -(minus_vx_by_a1 * acceleration[0] // m_platformR
-                + minus_vy_by_a1 * acceleration[1]);
+            output[0][0] = -(minus_vx_by_a1 * acceleration[0]
+                + minus_vy_by_a1 * acceleration[1]); // m_platformR
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][5] = rate_1_leg2; // fv_1_leg2
             output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
@@ -4492,10 +4492,10 @@ impl ThreeLegPoint {
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][19] = ::overact::math::wide::signed( // fs_2_leg1
+            output[0][19] = ::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 qd_2_leg1,
-            );
+            ); // fs_2_leg1
             output[1][16] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
             output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
             // --- leg2
@@ -4525,10 +4525,10 @@ impl ThreeLegPoint {
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][20] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
             output[0][20] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             // --- leg3
@@ -4568,14 +4568,14 @@ impl ThreeLegPoint {
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][21] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
-            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
+            ); // fs_2_leg3
+            output[0][21] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             let v2_by_1_y_leg3 = L_1 * c2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
@@ -4619,10 +4619,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], whose numbers are written into `output` one by one, each as soon as it is known.
+    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; what stands in `output` is no result then, for some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4796,15 +4796,15 @@ impl ThreeLegPoint {
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed( // fs_2_leg1
+            output[0][19] = -::overact::math::wide::signed(
                 g2_a1_leg1 - 1.0,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][19] = -::overact::math::wide::signed( // fs_2_leg1
+            output[1][19] = -::overact::math::wide::signed(
                 g2_a2_leg1,
                 minus_qd_2_leg1,
-            );
+            ); // fs_2_leg1
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -4908,29 +4908,29 @@ impl ThreeLegPoint {
             output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = ::overact::math::wide::signed( // fs_2_leg3
+            output[0][21] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
-            output[1][21] = ::overact::math::wide::signed( // fs_2_leg3
+            output[1][21] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
-            );
+            ); // fs_2_leg3
             output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed( // fs_2_leg2
+            output[1][20] = ::overact::math::wide::signed(
                 g2_a2_leg2 - 1.0,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][20] = -::overact::math::wide::signed( // fs_2_leg2
+            output[0][20] = -::overact::math::wide::signed(
                 minus_g2_a1_leg2,
                 qd_2_leg2,
-            );
+            ); // fs_2_leg2
             ::core::result::Result::Ok(())
         })
     }

@@ -16,6 +16,9 @@ pub const STEPS: usize = 20;
 /// The steps end when the largest one falls below this (m, rad), or the next one will; in numbers of 64 bits.
 pub const TOLERANCE: f64 = DOUBLE.step;
 
+/// Steps that are longer than this (m, rad) come from a start that is far away, and say nothing of the next one.
+const LONG_STEP: f64 = 1.0;
+
 /// A pose in closed form that is not farther than this from the start (m, rad) is where the steps start.
 const NEAR: f64 = 0.01;
 
@@ -119,7 +122,8 @@ fn iterate<T: Float>(
         if largest < tolerated || largest * largest < T::of(0.1) * tolerated * before {
             return Ok(true);
         }
-        before = largest;
+        // The step behind a longer one is no sign of how fast steps shrink.
+        before = largest.min(T::of(LONG_STEP));
     }
     Ok(false)
 }
@@ -367,6 +371,17 @@ mod tests {
             };
             assert_eq!(steps(&mut [0.0], &mut [0.0], find, displace), has_led);
         }
+    }
+
+    #[test]
+    fn a_step_from_far_away_does_not_end_the_next_one() {
+        let mut lengths = [1e12, 0.3, 1e-3, 1e-14].into_iter();
+        let find = |_: &[f64], step: &mut [f64]| {
+            step[0] = lengths.next().unwrap_or_default();
+            Ok(())
+        };
+        assert!(!steps(&mut [-1e12], &mut [0.0], find, |_, _| ()));
+        assert_eq!(lengths.next(), None);
     }
 
     #[test]

@@ -217,13 +217,11 @@ fn around(
     }
     let into = ident(&body_name(function, outline));
     let written = [
-        format!(
-            " [`Self::{name}`], whose numbers are written into `output` one by one, each as soon as it is known."
-        ),
+        format!(" [`Self::{name}`], written into `output` rather than handed back."),
         String::new(),
         " # Errors".to_owned(),
         format!(
-            " Those of [`Self::{name}`]; what stands in `output` is no result then, for some of it may have been written."
+            " Those of [`Self::{name}`]. What stands in `output` is no result then: some of it may have been written."
         ),
     ];
     quote! {

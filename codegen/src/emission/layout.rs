@@ -35,6 +35,8 @@ pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
     let mut left = sections.iter();
     let mut starts = [].iter().peekable();
     let mut columns: &[String] = &[];
+    // The column of a statement that has not ended.
+    let mut open: Option<&str> = None;
     for line in code.lines() {
         let text = line.trim_start();
         let declared = text.strip_prefix("pub fn ");
@@ -49,7 +51,8 @@ pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
         while let Some((_, heading)) = starts.next_if(|(name, _)| assigns(text, name)) {
             push_line(&mut out, &format!("{indent}// --- {heading}"));
         }
-        match unnamed(text, columns) {
+        open = unnamed(text, columns).or(open);
+        match open.take_if(|_| text.ends_with(';')) {
             Some(name) => push_line(&mut out, &format!("{line} // {name}")),
             None => push_line(&mut out, line),
         }
@@ -57,7 +60,7 @@ pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
     out
 }
 
-/// The name of the column whose number a statement writes, unless the value has it in its own: of
+/// The name of the column whose number a statement that begins so writes, unless the value has it in its own: of
 /// `output[0][9] = x * y;` that of column 9.
 fn unnamed<'c>(statement: &str, columns: &'c [String]) -> Option<&'c str> {
     let (place, value) = statement.strip_prefix("output[")?.split_once("] = ")?;
@@ -185,9 +188,9 @@ mod tests {
             starts: vec![("y".to_owned(), "Rates".to_owned())],
             columns: columns.to_vec(),
         };
-        let code = "pub fn g() {\n    output[0][1] = 1.0;\n}\npub fn g_into(x: f64) {\n    let y = x;\n    output[0][1] = y;\n}\n";
+        let code = "pub fn g() {\n    output[0][1] = 1.0;\n}\npub fn g_into(x: f64) {\n    let y = x;\n    output[0][1] = y\n        + x;\n}\n";
         let wanted = "pub fn g() {\n    output[0][1] = 1.0;\n}\npub fn g_into(x: f64) {\n    // --- Rates\n    let y = x;\n    \
-                      output[0][1] = y; // fv_1\n}\n";
+                      output[0][1] = y\n        + x; // fv_1\n}\n";
         assert_eq!(super::with_comments(code, &[sections]), wanted);
     }
 

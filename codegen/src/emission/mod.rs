@@ -174,7 +174,7 @@ fn is_short(model: &RobotModel) -> Option<&'static str> {
 fn written_into() -> [String; 2] {
     [
         String::new(),
-        " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time.".to_owned(),
+        " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.".to_owned(),
     ]
 }
 

@@ -22,7 +22,8 @@ static rob_error rob_LOOP(const double *actuators, double *pose)
         if ((largest < LIMIT_STEP) || ((largest * largest) < (0.1 * LIMIT_STEP * before))) {
             return ROB_OK;
         }
-        before = largest;
+        /* The step behind a longer one is no sign of how fast steps shrink. */
+        before = (largest < 1.0) ? largest : 1.0;
     }
     return ROB_NO_CONVERGENCE;
 }
