@@ -5,6 +5,9 @@
 //! next is therefore chosen by how many values wait after it: the one that leaves the fewest, of equal ones the first
 //! column by column. What conditions are on comes first, of all legs: their roots and quotients take long, and do so side
 //! by side as long as no result of another leg is written between them. The steps and their results stay what they are.
+//!
+//! To tell what a result costs all has to be seen that is still to be computed for it, so of a large program only the next
+//! results are compared, the fewer the more steps there are.
 
 use super::program::{Operand, Operation, Program};
 use std::collections::BTreeSet;
@@ -18,11 +21,14 @@ pub(crate) fn few_waiting(program: &Program) -> Program {
         order.compute(step);
     }
     while let Some(next) = order.cheapest() {
-        order.results[next].is_written = true;
         order.compute(order.results[next].step);
     }
     renumbered(program, &order.steps)
 }
+
+/// Over the square of the number of steps, how many results are compared: all that a robot of seven joints has, and ten
+/// where there are ten thousand steps. What a comparison looks at grows with the steps, and so does how often it is made.
+const COMPARED: usize = 1_000_000_000;
 
 /// A number of the output that has to be computed.
 struct Result {
@@ -30,7 +36,6 @@ struct Result {
     step: usize,
     /// By how many more values wait once it is computed, if that is known.
     waiting: Option<isize>,
-    is_written: bool,
 }
 
 struct Order<'p> {
@@ -42,8 +47,12 @@ struct Order<'p> {
     steps: Vec<usize>,
     /// In the order in which they are taken where nothing else tells them apart.
     results: Vec<Result>,
+    /// Those that are not written yet.
+    open: Vec<usize>,
+    /// How many of these are compared.
+    compared: usize,
     /// For each step the results whose cost depends on it.
-    concerned: Vec<Vec<usize>>,
+    concerned: Vec<BTreeSet<usize>>,
 }
 
 /// What is to be computed for a result, with the uses of steps by it.
@@ -67,36 +76,39 @@ impl<'p> Order<'p> {
         let steps = places
             .into_iter()
             .filter_map(|at| step(program.entries[at].operand));
-        let results = steps.map(|step| Result {
-            step,
-            waiting: None,
-            is_written: false,
-        });
+        let results: Vec<Result> = steps
+            .map(|step| Result {
+                step,
+                waiting: None,
+            })
+            .collect();
         Self {
             program,
             left: program.uses(),
             is_done: vec![false; count],
             steps: Vec::with_capacity(count),
-            results: results.collect(),
-            concerned: vec![Vec::new(); count],
+            open: (0..results.len()).collect(),
+            compared: (COMPARED / count.max(1).pow(2)).max(1),
+            results,
+            concerned: vec![BTreeSet::new(); count],
         }
     }
 
-    /// The result that leaves the fewest values waiting.
+    /// The next result: of those that are compared the one that leaves the fewest values waiting.
     fn cheapest(&mut self) -> Option<usize> {
-        for at in 0..self.results.len() {
-            if !self.results[at].is_written && self.results[at].waiting.is_none() {
+        let compared = self.open.len().min(self.compared);
+        for place in 0..compared {
+            let at = self.open[place];
+            if self.results[at].waiting.is_none() {
                 let cone = self.cone(self.results[at].step);
                 for &(step, _) in &cone.uses {
-                    self.concerned[step].push(at);
+                    self.concerned[step].insert(at);
                 }
                 self.results[at].waiting = Some(self.waiting(&cone));
             }
         }
-        let open = self.results.iter().enumerate();
-        let open = open.filter(|(_, result)| !result.is_written);
-        open.min_by_key(|(_, result)| result.waiting)
-            .map(|(at, _)| at)
+        let cheapest = (0..compared).min_by_key(|&place| self.results[self.open[place]].waiting)?;
+        Some(self.open.remove(cheapest))
     }
 
     /// By how many more values wait once a cone is computed.

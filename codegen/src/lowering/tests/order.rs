@@ -113,3 +113,22 @@ fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
     before.entries[2] = Entry::positive(input(3)).times(true);
     assert_eq!(few_waiting(&before), before);
 }
+
+#[test]
+fn of_a_large_program_the_next_result_is_taken_as_it_stands() {
+    // The first two results share a value, the third needs nothing: it would be the first.
+    for (links, is_compared) in [(3, true), (32_000, false)] {
+        let link = |at: usize| match at {
+            0 => Operation::Mul(input(0), input(1)),
+            _ => Operation::Mul(Operand::Step(at - 1), input(2)),
+        };
+        let mut steps: Vec<Operation> = (0..links).map(link).collect();
+        steps.push(Operation::Mul(Operand::Step(0), input(3)));
+        steps.push(Operation::Mul(input(1), input(3)));
+        let before = program([1, 3], &steps, &[links - 1, links, links + 1]);
+        let after = few_waiting(&before);
+        assert_eq!(after.verify(), Ok(()));
+        let alone = after.steps[0].operation == steps[links + 1];
+        assert_eq!(alone, is_compared, "{links} links");
+    }
+}
