@@ -5,8 +5,10 @@ first of them with times that go on. Everything runs with one thread.
 """
 
 import os
+import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from . import ours, report
@@ -59,16 +61,21 @@ def measured(command):
     process = subprocess.Popen(
         list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
+    memory = 0
+    # What the system tells at the end has this process in it, from which that one has come. A program that has ended has
+    # no memory any more.
+    while not os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG):
+        status = Path(f"/proc/{process.pid}/status").read_text()
+        memory = max([memory, *map(int, re.findall(r"VmHWM:\s*(\d+)", status))])
+        time.sleep(0.02)
     message = process.stderr.read()
-    # Before it is gone: its counts.
-    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
     counts = Path(f"/proc/{process.pid}/io").read_text().split()
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise RuntimeError(message.decode().strip())
     read = int(counts[counts.index("rchar:") + 1])
-    return usage.ru_utime + usage.ru_stime, read, usage.ru_maxrss / 1024
+    return usage.ru_utime + usage.ru_stime, read, memory / 1024
 
 
 def identified(description, runs, rounds):
