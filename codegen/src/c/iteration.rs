@@ -243,19 +243,12 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     };
     let tables = aside.map_or_else(String::new, |own| coordinates(&own));
     let (fit, steps) = fitting(model);
-    let turn = if has_quaternion(model) { TURN } else { "" };
-    let between = if has_quaternion(model) { "\n" } else { "" };
-    let helpers = text(&[
-        &tables,
-        turn,
-        between,
-        displace,
-        "\n",
-        GAUSS_NEWTON,
-        "\n",
-        &steps,
-        "\n",
-    ]);
+    let turn = match has_quaternion(model) {
+        true => [TURN, "\n"].concat(),
+        false => String::new(),
+    };
+    let displace = [&tables, &turn, displace].concat();
+    let helpers = text(&[&displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
     let found = found.replace("rob_FIT", fit);
     let body = text(&[FORWARD_CHECKS, start, &found, FORWARD_END]);
     format!("{helpers}{head}{body}")

@@ -88,7 +88,7 @@ impl<'p> Order<'p> {
             is_done: vec![false; count],
             steps: Vec::with_capacity(count),
             open: (0..results.len()).collect(),
-            compared: (COMPARED / count.max(1).pow(2)).max(1),
+            compared: (COMPARED / count.max(1) / count.max(1)).max(1),
             results,
             concerned: vec![BTreeSet::new(); count],
         }
