@@ -1,10 +1,10 @@
 //! The stages of the generator, in order.
 
+use crate::Effort;
 use crate::choice::{Chosen, Missing};
 use crate::derivation::{MotionInput, Selection, Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
-use crate::effort::Effort;
 use crate::float::Float;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};

@@ -1,8 +1,8 @@
 //! What a user asks of the generator: which functions, and how much work fewer operations are worth.
 
+use crate::Effort;
 use crate::choice::Choice;
 use crate::derivation::MotionInput;
-use crate::effort::Effort;
 use crate::float::Float;
 use crate::mechanism::Mechanism;
 use crate::runtime::Runtime;

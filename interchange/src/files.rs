@@ -1,6 +1,6 @@
 //! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
 
-use overact_codegen::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
+use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 use std::{
     cell::RefCell,
     fs, io,

@@ -159,7 +159,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         let found = model.joint_named(name);
         if found.is_none() {
             let names = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = overact_codegen::diagnostic::did_you_mean(name, names);
+            let near = overact_description::diagnostic::did_you_mean(name, names);
             let help = near.unwrap_or_else(|| "name joints of the file that move".to_owned());
             files.refuse(format!("there is no joint `{name}`"), help);
         }

@@ -14,17 +14,28 @@ struct House {
     order: &'static [&'static str],
 }
 
-const HOUSES: [House; 7] = [
+const HOUSES: [House; 8] = [
+    House {
+        folder: "description",
+        order: &[
+            "diagnostic",
+            "effort",
+            "expressions",
+            "robot",
+            "toml_text",
+            "experiments",
+            "document",
+            "root",
+            "parameters_file",
+        ],
+    },
     House {
         folder: "codegen",
         order: &[
             "parallel",
-            "effort",
             "float",
             "runtime",
-            "diagnostic",
             "cas",
-            "description",
             "mechanism",
             "derivation",
             "lowering",

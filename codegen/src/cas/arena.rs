@@ -14,9 +14,9 @@ use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
 use super::field::{ByValue, Element, canonical};
 use super::hasher::QuickMap;
-use super::number::Number;
-use super::ratio::Ratio;
 use super::sample::Sample;
+use overact_exact::Number;
+use overact_exact::Ratio;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 

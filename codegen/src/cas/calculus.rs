@@ -4,7 +4,7 @@ use super::arena::{Arena, Handle, Op};
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
 use super::hasher::{QuickMap, QuickSet};
-use super::number::Number;
+use overact_exact::Number;
 use std::collections::BTreeSet;
 
 impl<'a> Expr<'a> {

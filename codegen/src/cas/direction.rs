@@ -1,7 +1,7 @@
 //! Variable angles: linear combinations of symbols plus a constant.
 
-use super::angle::Angle;
-use super::ratio::Ratio;
+use overact_exact::Angle;
+use overact_exact::Ratio;
 
 /// Index of a symbol in its arena.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -4,8 +4,8 @@
 use super::Angle;
 use super::arena::{Arena, Handle, Op, negative_name};
 use super::direction::Direction;
-use super::number::Number;
-use super::ratio::Ratio;
+use overact_exact::Number;
+use overact_exact::Ratio;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An expression: a `Copy` handle to a node of an [`Arena`].

@@ -14,28 +14,21 @@
 //!
 //! The module knows nothing about robots.
 
-pub mod angle;
 pub mod arena;
 pub mod calculus;
 pub mod direction;
 mod divisors;
 pub mod expr;
-pub mod field;
 pub(crate) mod filter;
-pub(crate) mod hasher;
-pub mod number;
 pub mod print;
-pub mod ratio;
 mod sample;
 pub mod stream;
 pub mod vector;
 
-pub use angle::Angle;
 pub use arena::{Arena, InputElement};
 pub use calculus::Substitution;
 pub use direction::{Direction, SymbolId};
 pub use expr::Expr;
-pub use number::Number;
-pub use ratio::Ratio;
+pub use overact_exact::{Angle, Number, Ratio, field, hasher};
 pub use stream::Stream;
 pub use vector::{Matrix3, Vector3};

@@ -1,18 +1,6 @@
 //! How far the search of a function goes: all its limits stand here.
 
-use crate::effort::Effort;
-
-impl Effort {
-    /// What it allows in the functions that matter most.
-    #[must_use]
-    pub const fn limits(self) -> SearchLimits {
-        match self {
-            Self::None => SearchLimits::NONE,
-            Self::Quick => SearchLimits::QUICK,
-            Self::Thorough => SearchLimits::THOROUGH,
-        }
-    }
-}
+use crate::Effort;
 
 /// How far the search of one function goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,6 +32,16 @@ pub struct SearchLimits {
 }
 
 impl SearchLimits {
+    /// The limits of the functions that matter most.
+    #[must_use]
+    pub const fn of(effort: Effort) -> Self {
+        match effort {
+            Effort::None => Self::NONE,
+            Effort::Quick => Self::QUICK,
+            Effort::Thorough => Self::THOROUGH,
+        }
+    }
+
     /// No node is looked at.
     pub(crate) const NONE: Self = Self {
         replaces: false,
@@ -94,9 +92,10 @@ impl SearchLimits {
     /// Up to so many nodes of a function with so many are searched for pairs at once.
     #[must_use]
     pub(crate) const fn piece(&self, nodes: usize) -> usize {
-        match nodes <= self.large_nodes {
-            true => self.piece_nodes,
-            false => self.small_piece_nodes,
+        if nodes <= self.large_nodes {
+            self.piece_nodes
+        } else {
+            self.small_piece_nodes
         }
     }
 

@@ -12,7 +12,6 @@ mod check;
 mod explain;
 mod home;
 mod mobility;
-mod motion;
 pub mod numeric;
 mod parasitic;
 mod reach;
@@ -23,9 +22,10 @@ mod structure;
 #[cfg(test)]
 mod tests;
 
+pub use crate::description::TwistCoordinate;
 pub use check::check;
 pub use home::Home;
-pub use motion::TwistCoordinate;
+pub use numeric::placement_isometry;
 
 pub use crate::cas::{Angle, Number, Ratio};
 pub use crate::description::{

@@ -15,15 +15,13 @@ fn shift(x: f64, z: f64) -> Isometry3<f64> {
     Isometry3::translation(x, 0.0, z)
 }
 
-impl Placement {
-    /// The placement as a displacement.
-    #[must_use]
-    pub fn numeric(&self) -> Isometry3<f64> {
-        let [rx, ry, rz] = self.rotation.map(crate::cas::Angle::value);
-        let rotation = Rotation3::from_euler_angles(rx, ry, rz);
-        let [x, y, z] = self.at.map(crate::cas::Number::value);
-        Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from(rotation))
-    }
+/// The placement as a displacement in floating point.
+#[must_use]
+pub fn placement_isometry(placement: &Placement) -> Isometry3<f64> {
+    let [rx, ry, rz] = placement.rotation.map(crate::cas::Angle::value);
+    let rotation = Rotation3::from_euler_angles(rx, ry, rz);
+    let [x, y, z] = placement.at.map(crate::cas::Number::value);
+    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from(rotation))
 }
 
 impl Joint {
@@ -59,7 +57,7 @@ impl Leg {
         for joint in &self.joints {
             let from = joint
                 .antecedent
-                .map_or_else(|| self.base.numeric(), |a| frames[a]);
+                .map_or_else(|| placement_isometry(&self.base), |a| frames[a]);
             frames.push(from * joint.displacement(position(joint)));
         }
         frames
@@ -155,7 +153,7 @@ pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
 #[must_use]
 pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
     match end {
-        End::Rigid(placement) => platform * placement.numeric(),
+        End::Rigid(placement) => platform * placement_isometry(placement),
         End::Point { at, .. } => {
             let [x, y, z] = at.map(crate::cas::Number::value);
             platform * Isometry3::translation(x, y, z)

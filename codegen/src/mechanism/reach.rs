@@ -66,7 +66,7 @@ fn as_point(end: &End) -> End {
 
 fn starts(leg: &Leg, rough: &[f64], target: &Isometry3<f64>) -> Vec<Vec<f64>> {
     let mut stream = Stream::new(2);
-    let base = leg.base.numeric().translation.vector;
+    let base = super::placement_isometry(&leg.base).translation.vector;
     let far = size(leg) + (target.translation.vector - base).norm();
     let mut starts = vec![rough.to_vec()];
     for _ in 1..STARTS {

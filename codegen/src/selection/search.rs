@@ -1,10 +1,10 @@
 //! How far the operations of a robot's functions are searched, and the states at which the search compares
 //! the digits of their forms.
 
+use crate::Effort;
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{Derived, Guard, GuardKind};
 use crate::diagnostic::InternalError;
-use crate::effort::Effort;
 use crate::lowering::{
     Array, Condition, Expressions, GuardedExpr, Program, SearchLimits, States, lower,
 };
@@ -44,7 +44,7 @@ impl Search {
     /// The search that an effort asks for.
     #[must_use]
     pub fn with(effort: Effort, mechanism: &Mechanism) -> Self {
-        let limits = effort.limits();
+        let limits = SearchLimits::of(effort);
         let spreads = if limits.compares_regular_states {
             &[Spread::NEAR, Spread::FAR][..]
         } else {

@@ -103,7 +103,7 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
             Some(at) => found.push(at),
             None => {
                 let all = network.edges.iter().map(|edge| network.edge_name(edge));
-                let near = overact_codegen::diagnostic::did_you_mean(name, all);
+                let near = overact_description::diagnostic::did_you_mean(name, all);
                 let message = format!("there is no joint `{name}` to be a coordinate");
                 files.refuse(
                     message,

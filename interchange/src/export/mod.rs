@@ -16,10 +16,7 @@ use crate::{
     options::Options,
     plan::{Joint, Plan},
 };
-use overact_codegen::{
-    Source,
-    description::{self, parse_parameters},
-};
+use overact_description::{Source, parse_parameters};
 use patch::{Patch, element_at};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -107,7 +104,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
 fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<String, f64>> {
     let file = files.read(parameters, None)?;
     let source = Source::new(files.name(file), files.text(file));
-    let Ok(description) = description::parse(&Source::new("imported.toml", toml)) else {
+    let Ok(description) = overact_description::parse(&Source::new("imported.toml", toml)) else {
         files.refuse(
             "the description of the file can't be read",
             "`overact import` and `overact check` say why",

@@ -64,7 +64,7 @@ impl Defaults {
         let name = named.map_or(around, |(name, _)| name);
         let Some(class) = self.classes.get(name) else {
             let place = named.map_or(&element.place, |(_, place)| place);
-            let near = overact_codegen::diagnostic::did_you_mean(
+            let near = overact_description::diagnostic::did_you_mean(
                 name,
                 self.classes.keys().map(String::as_str),
             );

@@ -68,7 +68,7 @@ fn frames(
             let name = element.required(files, key)?;
             let found = sites.get(name).copied();
             if found.is_none() {
-                let near = overact_codegen::diagnostic::did_you_mean(
+                let near = overact_description::diagnostic::did_you_mean(
                     name,
                     sites.keys().map(String::as_str),
                 );
@@ -96,7 +96,7 @@ fn frames(
         };
         if found.is_none() {
             let all = model.bodies.iter().map(|body| body.name.as_str());
-            let near = overact_codegen::diagnostic::did_you_mean(name, all);
+            let near = overact_description::diagnostic::did_you_mean(name, all);
             let help = near.unwrap_or_else(|| "name a body".to_owned());
             files.report(&element.place, format!("there is no body `{name}`"), help);
         }
@@ -141,7 +141,7 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         let found = model.joint_named(name);
         if found.is_none() {
             let all = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = overact_codegen::diagnostic::did_you_mean(name, all);
+            let near = overact_description::diagnostic::did_you_mean(name, all);
             let help = near.unwrap_or_else(|| "name a joint".to_owned());
             files.report(&element.place, format!("there is no joint `{name}`"), help);
         }

@@ -184,7 +184,7 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
         let found = (0..models.len()).find(|&at| name(at) == wanted);
         if found.is_none() {
             let near =
-                overact_codegen::diagnostic::did_you_mean(wanted, (0..models.len()).map(name));
+                overact_description::diagnostic::did_you_mean(wanted, (0..models.len()).map(name));
             let help = near.unwrap_or_else(|| "name a <model> of the file".to_owned());
             files.report(&around.place, format!("there is no model `{wanted}`"), help);
         }

@@ -87,7 +87,8 @@ fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e
             let link = end.required(files, "link")?;
             if !links.contains_key(link) {
                 let message = format!("there is no link `{link}`");
-                let near = overact_codegen::diagnostic::did_you_mean(link, links.keys().copied());
+                let near =
+                    overact_description::diagnostic::did_you_mean(link, links.keys().copied());
                 let help = near.unwrap_or_else(|| "name a <link>".to_owned());
                 files.report(&end.place, message, help);
                 return None;

@@ -121,7 +121,7 @@ impl Tree {
         if found.is_none() {
             let message = format!("there is no link or joint `{name}`");
             let names = self.bodies.keys().map(String::as_str);
-            let help = overact_codegen::diagnostic::did_you_mean(name, names);
+            let help = overact_description::diagnostic::did_you_mean(name, names);
             files.report(
                 place,
                 message,

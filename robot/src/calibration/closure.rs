@@ -12,6 +12,7 @@ use overact::{Error, Function, Model};
 use overact_codegen::mechanism::{
     Leg, Mechanism, TwistCoordinate,
     numeric::{platform_frame, target},
+    placement_isometry,
 };
 use overact_identification::{ChangedGeometry, Geometry, GeometryParameter, Reached};
 
@@ -168,7 +169,10 @@ fn end_miss(
 ) -> Vector3<f64> {
     let antecedent = |joint: usize| {
         let before = leg.joints[joint].antecedent;
-        before.map_or_else(|| leg.base.numeric().rotation, |at| frames[at].rotation)
+        before.map_or_else(
+            || placement_isometry(&leg.base).rotation,
+            |at| frames[at].rotation,
+        )
     };
     let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
     let along = |joint: usize, way: Vector3<f64>| match is_on_way(leg, joint) {

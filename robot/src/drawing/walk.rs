@@ -2,7 +2,7 @@
 
 use super::scene::{NOTHING, Part, Point};
 use nalgebra::{Isometry3, Vector3};
-use overact_codegen::mechanism::{Joint, JointKind, Leg};
+use overact_codegen::mechanism::{Joint, JointKind, Leg, placement_isometry};
 
 /// The parts of a leg and where it is held. `pixel` is the length of one pixel, m; a `tree` is a robot of its
 /// own, without platform.
@@ -41,7 +41,7 @@ impl<'m> Walk<'m> {
         Self {
             frames: leg.frames(positions),
             positions: leg.joints.iter().map(position).collect(),
-            base: leg.base.numeric().translation.vector,
+            base: placement_isometry(&leg.base).translation.vector,
             leg,
             pixel,
             tree,

@@ -1,9 +1,9 @@
 //! What a node means: its values at random points of the field and at a real sample point.
 
 use super::super::field::{CIRCLE, Element, canonical, mix};
-use super::super::number::Number;
 use super::super::sample::Sample;
 use super::{Handle, Op, POINTS, Tables};
+use overact_exact::Number;
 use std::ops::{Add, Mul, Neg};
 
 /// The values of an expression at the two random points of the field and at the real one, by which

@@ -1,10 +1,10 @@
 //! Nodes that are multiples of other nodes.
 
 use super::super::field::Element;
-use super::super::number::Number;
-use super::super::ratio::Ratio;
 use super::super::sample::Sample;
 use super::{Arena, Fingerprint, Handle, Op, Tables};
+use overact_exact::Number;
+use overact_exact::Ratio;
 
 impl Arena {
     /// From now on, a node that is another one times a fraction of a known irrational constant is that one, scaled;
@@ -93,9 +93,9 @@ fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::angle::Angle;
     use super::*;
     use crate::cas::Direction;
+    use overact_exact::Angle;
 
     /// c (√3/2 c q) + s (√3/2 s q) is √3/2 q once multiples of constants are looked for.
     #[test]

@@ -3,9 +3,9 @@
 use super::super::direction::{Direction, SymbolId};
 use super::super::expr::Expr;
 use super::super::field::{Element, mix, mix_name};
-use super::super::number::Number;
 use super::super::sample::Sample;
 use super::{Arena, Fingerprint, Op, POINTS};
+use overact_exact::Number;
 
 /// An element of an input array of a function, such as `pose[2]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,0 +1,320 @@
+//! Source text, spans and collected errors, and how they are shown.
+//!
+//! A stage that finds an error notes a [`Diagnostic`] and goes on, so that one run shows every
+//! error of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
+//! styled for a terminal, or plain data for machines.
+
+mod internal;
+mod render;
+mod suggestion;
+
+pub use internal::InternalError;
+pub use overact_core::{Code, Explanation};
+pub use render::{Located, visible};
+pub use suggestion::{did_you_mean, nearest};
+
+use std::ops::Range;
+
+/// A range of bytes of a source text.
+pub type Span = Range<usize>;
+
+/// A text and what its user calls it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The path as the user gave it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// A place in a text for people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Position {
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+}
+
+impl Source {
+    /// A text with its name.
+    #[must_use]
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            text: text.into(),
+        }
+    }
+
+    /// Line and column at which a span starts; a start behind the end counts as the end.
+    #[must_use]
+    pub fn position(&self, span: &Span) -> Position {
+        let before = &self.text[..self.boundary(span.start)];
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        Position {
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// The last character boundary at or before a byte.
+    fn boundary(&self, at: usize) -> usize {
+        let mut at = at.min(self.text.len());
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    }
+
+    /// The part of a span that lies on its first line, cut to character boundaries.
+    fn first_line(&self, span: &Span) -> Span {
+        let start = self.boundary(span.start);
+        let end = self.boundary(span.end.max(start)).max(start);
+        let length = self.text[start..end]
+            .find(['\n', '\r'])
+            .unwrap_or(end - start);
+        start..start + length
+    }
+}
+
+/// One error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Diagnostic {
+    /// What kind of error it is, under which it is explained.
+    pub code: Code,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// Where; `None` if it is no one place of the text.
+    pub span: Option<Span>,
+    /// What stands there or should stand there: the text under the caret, possibly empty.
+    pub label: String,
+    /// A way out.
+    pub help: Option<String>,
+    /// Which kind of error it is, for programs that have to tell it from others.
+    pub kind: DiagnosticKind,
+}
+
+/// Kinds of errors that programs tell from others without reading the message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum DiagnosticKind {
+    /// An error that is told by its message alone.
+    #[default]
+    Plain,
+    /// The legs leave the platform more motions than the description gives it, and the actuators drive all
+    /// of them: a sound robot, but one with more degrees of freedom.
+    NotHeld,
+}
+
+/// Characters of a message that are shown, at most.
+const LONGEST_MESSAGE: usize = 2000;
+
+/// A message without its middle, if a value that it repeats is beyond reading.
+fn short(message: String) -> String {
+    let count = message.chars().count();
+    if count <= LONGEST_MESSAGE {
+        return message;
+    }
+    let half = LONGEST_MESSAGE / 2;
+    let start: String = message.chars().take(half).collect();
+    let end: String = message.chars().skip(count - half).collect();
+    format!("{start}…{end}")
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    #[must_use]
+    pub fn new(code: Code, message: impl Into<String>, span: Span) -> Self {
+        Self {
+            code,
+            message: short(message.into()),
+            span: Some(span),
+            label: String::new(),
+            help: None,
+            kind: DiagnosticKind::Plain,
+        }
+    }
+
+    /// An error of the text as a whole.
+    #[must_use]
+    pub fn global(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            message: short(message.into()),
+            span: None,
+            label: String::new(),
+            help: None,
+            kind: DiagnosticKind::Plain,
+        }
+    }
+
+    /// At a place, if it is known.
+    #[must_use]
+    pub fn at(self, span: Option<Span>) -> Self {
+        Self { span, ..self }
+    }
+
+    /// With a text under the caret.
+    #[must_use]
+    pub fn label(self, label: impl Into<String>) -> Self {
+        Self {
+            label: short(label.into()),
+            ..self
+        }
+    }
+
+    /// With a way out.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self {
+            help: Some(short(help.into())),
+            ..self
+        }
+    }
+
+    /// Of a kind that programs tell from others.
+    #[must_use]
+    pub fn kind(self, kind: DiagnosticKind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// With a way out, if there is one.
+    #[must_use]
+    pub fn maybe_help(self, help: Option<String>) -> Self {
+        Self {
+            help: help.or(self.help),
+            ..self
+        }
+    }
+}
+
+/// All errors that were found so far, in order of their place.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+    internal: Option<Box<InternalError>>,
+}
+
+impl Diagnostics {
+    /// None yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an error; the same error at the same place is kept once.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        let same = |d: &Diagnostic| d.message == diagnostic.message && d.span == diagnostic.span;
+        if !self.list.iter().any(same) {
+            let start = |d: &Diagnostic| d.span.as_ref().map_or(0, |s| s.start);
+            let at = self
+                .list
+                .partition_point(|d| start(d) <= start(&diagnostic));
+            self.list.insert(at, diagnostic);
+        }
+    }
+
+    /// Adds all errors of another collection.
+    pub fn append(&mut self, other: Self) {
+        self.internal = self.internal.take().or(other.internal);
+        for diagnostic in other.list {
+            self.push(diagnostic);
+        }
+    }
+
+    /// Whether an error at exactly this place is known.
+    #[must_use]
+    pub fn has_error_at(&self, span: &Span) -> bool {
+        self.list.iter().any(|d| d.span.as_ref() == Some(span))
+    }
+
+    /// Whether there is no error.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Number of errors.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The errors in order of their place.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.list.iter()
+    }
+
+    /// The value, if there is no error.
+    ///
+    /// # Errors
+    /// The collection itself, if it is not empty.
+    pub fn into_result<T>(self, value: T) -> Result<T, Self> {
+        if self.is_empty() {
+            Ok(value)
+        } else {
+            Err(self)
+        }
+    }
+}
+
+impl<'a> IntoIterator for &'a Diagnostics {
+    type Item = &'a Diagnostic;
+    type IntoIter = std::slice::Iter<'a, Diagnostic>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self {
+            list: vec![diagnostic],
+            internal: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters() {
+        let source = Source::new("a.toml", "ä = 1\nµß = 2\n");
+        assert_eq!(source.position(&(0..1)), Position { line: 1, column: 1 });
+        assert_eq!(source.position(&(12..13)), Position { line: 2, column: 4 });
+        assert_eq!(
+            source.position(&(900..901)),
+            Position { line: 3, column: 1 }
+        );
+    }
+
+    #[test]
+    fn values_beyond_reading_are_cut_in_the_middle() {
+        let said = |value: &str| {
+            Diagnostic::global(Code::UNKNOWN_KEY, format!("there is no `{value}` here"))
+        };
+        let value = "é".repeat(100_000);
+        let both = said(&value).help(value).label("short");
+        for text in [&both.message, both.help.as_ref().expect("a help")] {
+            assert_eq!(text.chars().count(), LONGEST_MESSAGE + 1);
+        }
+        assert!(both.message.starts_with("there is no `é") && both.message.ends_with("é` here"));
+        assert_eq!(said("x").message, "there is no `x` here");
+        assert_eq!(both.label, "short");
+    }
+
+    #[test]
+    fn errors_are_sorted_and_kept_once() {
+        let mut all = Diagnostics::new();
+        assert!(all.clone().into_result(()).is_ok());
+        all.push(Diagnostic::new(Code::SYNTAX, "second", 5..6));
+        all.push(Diagnostic::new(Code::SYNTAX, "first", 1..2));
+        all.push(Diagnostic::new(Code::SYNTAX, "second", 5..6));
+        let messages: Vec<_> = all.iter().map(|d| d.message.as_str()).collect();
+        assert_eq!(messages, ["first", "second"]);
+        assert!(all.into_result(()).is_err());
+    }
+}

@@ -1,0 +1,263 @@
+//! The table `[data]`: how a measured log maps on the robot.
+
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::experiments::experiment::position;
+use crate::experiments::transmission;
+use crate::expressions::dimension::Dimension;
+use crate::robot::doubt;
+use crate::robot::inventory::Inventory;
+use crate::robot::model::{JointKind, actuators};
+use crate::toml_text::reader::{Item, Table};
+
+/// How a measured log maps on the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Data {
+    /// How samples follow one another.
+    pub time: Clock,
+    /// Columns of the actuators' positions.
+    pub positions: Vec<String>,
+    /// Columns of the actuators' torques, forces or drive signals.
+    pub torques: Vec<String>,
+    /// Columns of the actuators' measured velocities, in the units of the positions and s; empty where there
+    /// are none.
+    pub velocities: Vec<String>,
+    /// Factors from columns to rad or m, one for each actuator.
+    pub position_scale: Vec<f64>,
+    /// What the positions show too much after that, rad or m, one for each actuator.
+    pub position_offset: Vec<f64>,
+    /// Factors from columns to N m or N, one for each actuator.
+    pub torque_gain: Vec<Factor>,
+    /// The rate of uniform times at which the log is resampled, Hz; none if its time is uniform.
+    pub resample: Option<f64>,
+    /// Of a log of motors the matrix T with θ = T q, a row for each motor, q being the actuated joints; empty
+    /// where the log has the joints' own positions and torques.
+    pub transmission: Vec<Vec<f64>>,
+    /// Place of the table.
+    pub span: Span,
+}
+
+/// How the samples of a log follow one another.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Clock {
+    /// The column of the time, s.
+    Column(String),
+    /// No column: one sample after the other at this frequency, Hz.
+    Frequency(f64),
+}
+
+/// The factor of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Factor {
+    /// A number, in SI units.
+    Value(f64),
+    /// The name of a variable in the log.
+    Variable(String),
+}
+/// Reads `[data]`.
+pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
+    let table = item.table("the table `[data]`")?;
+    let count = actuators(robot.legs).len();
+    let listed = |item: Item<'_, '_>| {
+        let names = item.strings()?;
+        check_count(&item, names.len(), count)?;
+        for element in item.list()? {
+            doubt::column(&element, element.value.as_str().unwrap_or_default());
+        }
+        Some(names.into_iter().map(|name| name.value).collect::<Vec<_>>())
+    };
+    let columns = |key: &str| listed(table.require(key, "give one column for each actuator")?);
+    let factors = |key: &str| {
+        let item = table.get(key);
+        item.map_or(Some(vec![Factor::Value(1.0); count]), |item| {
+            let list = if item.value.is_array() {
+                item.list()?
+            } else {
+                vec![item.clone(); count]
+            };
+            check_count(&item, list.len(), count)?;
+            let factors: Vec<_> = list.iter().map(|item| factor(item, robot)).collect();
+            factors.into_iter().collect()
+        })
+    };
+    let time = clock(&table, robot);
+    let resample = resample(&table, robot);
+    let (positions, torques) = (columns("positions"), columns("torques"));
+    let velocities = table.get("velocities").map_or(Some(Vec::new()), listed);
+    let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
+    let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
+    let position_offset = offsets(&table, robot);
+    let coordinates = table.get("coordinates");
+    let of_joints = gains_of_joints(&table, robot);
+    let motors = coordinates.as_ref().and_then(|item| {
+        let choice = item.choice(&[("joints", false), ("motors", true)])?;
+        choice.value.then_some(item)
+    });
+    let transmission = motors.map_or(Some(Vec::new()), |item| transmission::matrix(item, robot));
+    if motors.is_none() {
+        of_joints
+            .into_iter()
+            .for_each(|error| table.context.report_once(error));
+    }
+    table.finish();
+    Some(Data {
+        time: time?,
+        positions: positions?,
+        torques: torques?,
+        velocities: velocities?,
+        position_scale: position_scale?,
+        position_offset: position_offset?,
+        torque_gain: torque_gain?,
+        resample: resample?,
+        transmission: transmission?,
+        span: table.span.clone(),
+    })
+}
+
+/// The column of the time, or the frequency of logs without one.
+fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
+    let Some(sampling) = table.get("sampling") else {
+        let help =
+            "time = \"t\", the column of the time, or sampling = \"1 kHz\" where there is none";
+        let column = table.require("time", help)?.string()?;
+        return Some(Clock::Column(column.value));
+    };
+    if table.get("time").is_some() {
+        let error = sampling.error(
+            Code::CONTRADICTION,
+            "`sampling` is for logs without a column of the time",
+        );
+        let help = "leave out one of `time` and `sampling`";
+        table.context.report(error.help(help));
+    }
+    let frequency = sampling.positive(Dimension::FREQUENCY, robot.scope)?;
+    Some(Clock::Frequency(frequency))
+}
+
+/// The rate of uniform times at which a log is resampled, if it is.
+fn resample(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Option<f64>> {
+    let Some(item) = table.get("resample") else {
+        return Some(None);
+    };
+    if table.get("sampling").is_some() {
+        let error = item.error(
+            Code::CONTRADICTION,
+            "`resample` is for logs with a column of the time",
+        );
+        let help = "leave out `resample`: without such a column samples are uniform, and `decimation` keeps fewer";
+        table.context.report(error.help(help));
+    }
+    Some(Some(item.positive(Dimension::FREQUENCY, robot.scope)?))
+}
+
+/// Factors that are numbers: of positions no log says how they are scaled.
+fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
+    let number = |scale: &Factor| match scale {
+        Factor::Value(value) => Some(*value),
+        Factor::Variable(name) => {
+            let message = format!("`position_scale`: `{name}` is neither a number nor a constant");
+            let span = table.get("position_scale").map(|item| item.span);
+            let span = span.unwrap_or(table.span.clone());
+            table
+                .context
+                .report(Diagnostic::new(Code::SAME_NAME, message, span));
+            None
+        }
+    };
+    // Every one is looked at, so that every wrong one is reported.
+    let numbers: Vec<Option<f64>> = scales.iter().map(number).collect();
+    numbers.into_iter().collect()
+}
+
+/// Offsets of the positions: one for all or a list, none where the key is left out.
+fn offsets(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
+    let kinds = robot.actuator_kinds();
+    let Some(item) = table.get("position_offset") else {
+        return Some(vec![0.0; kinds.len()]);
+    };
+    let list = match item.value.is_array() {
+        true => item.list()?,
+        false => vec![item.clone(); kinds.len()],
+    };
+    check_count(&item, list.len(), kinds.len())?;
+    // Every one is looked at, so that every wrong one is reported.
+    let each = list.iter().zip(kinds);
+    let offsets: Vec<Option<f64>> = each
+        .map(|(item, kind)| Some(item.number(position(kind), robot.scope)?.value.value()))
+        .collect();
+    offsets.into_iter().collect()
+}
+
+pub(crate) fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) -> Option<()> {
+    if found == expected {
+        return Some(());
+    }
+    let message = format!(
+        "`{}`: expected {expected} entries, one for each actuator, found {found}",
+        item.key.value
+    );
+    item.context.report(item.error(Code::WRONG_COUNT, message));
+    None
+}
+
+/// Gains of joints whose unit is that of the other kind of joint: newtons at a revolute one, newton metres at a
+/// prismatic one.
+fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnostic> {
+    let Some(item) = table.get("torque_gain") else {
+        return Vec::new();
+    };
+    let kinds = robot.actuator_kinds();
+    let list = match item.value.is_array() {
+        true => item.list().unwrap_or_default(),
+        false => vec![item.clone(); kinds.len()],
+    };
+    let other = |(item, kind): (&Item<'_, '_>, &JointKind)| {
+        let (own, other) = match kind {
+            JointKind::Prismatic => (Dimension::FORCE, Dimension::TORQUE),
+            _ => (Dimension::TORQUE, Dimension::FORCE),
+        };
+        // Names of variables have no dimension.
+        let text = item.value.as_str().unwrap_or_default().trim();
+        if crate::toml_text::scope::is_word(text) {
+            return None;
+        }
+        let value = item.evaluate(robot.scope)?;
+        let signals = [Dimension::NONE, Dimension::VOLTAGE, Dimension::CURRENT];
+        let mut wrong = signals
+            .iter()
+            .filter_map(|signal| other.times(signal.power(-1)?));
+        wrong.any(|wrong| wrong == value.dimension).then(|| {
+            let joint = match kind {
+                JointKind::Prismatic => "prismatic",
+                _ => "revolute",
+            };
+            let message = format!(
+                "`torque_gain`: the column of a {joint} joint becomes {}, this makes {} of it",
+                own.describe(),
+                other.describe()
+            );
+            let help = "give the factor from the column to N m (revolute) or N (prismatic), such as \"35 Nm/V\"";
+            item.error(Code::UNIT, message).help(help)
+        })
+    };
+    list.iter().zip(&kinds).filter_map(other).collect()
+}
+
+/// A bare identifier that is no constant is the name of a variable in the log. The unit of a log is
+/// its own affair, so a factor may have any dimension.
+fn factor(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Factor> {
+    if let Some(text) = item.value.as_str() {
+        let text = text.trim();
+        let letter = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let word = crate::toml_text::scope::is_word(text);
+        if letter && word && text != "pi" && !robot.scope.contains(text) {
+            return Some(Factor::Variable(text.to_owned()));
+        }
+    }
+    let value = item.evaluate(robot.scope)?.scalar.value();
+    if value == 0.0 {
+        item.context
+            .report(item.error(Code::OUT_OF_RANGE, "a factor of 0 loses the signal"));
+        return None;
+    }
+    Some(Factor::Value(value))
+}

@@ -1,0 +1,98 @@
+//! What the identification of drive gains needs: values that are known exactly, drives with a signal each, and
+//! payloads of robots without platform.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::experiments::experiment::parameters;
+use crate::robot::inventory::Inventory;
+use crate::robot::model::{JointKind, Leg};
+use crate::toml_text::reader::Item;
+use overact_core::StandardParameter;
+
+/// Why gains of joints do not exist where motors turn several joints.
+pub const COUPLED_MOTORS: &str = "gains are those of drives that turn one joint each, but motors of this robot turn several: a joint's torque has no gain of its own";
+
+/// Why gains are not identified where torques of joints are known.
+pub const KNOWN_TORQUES: &str = "gains are not identified where torques of joints are known: a gain scales what is measured, not what is known";
+
+impl Leg {
+    /// Whether a torque of a joint is known.
+    #[must_use]
+    pub fn has_known_torques(&self) -> bool {
+        self.joints.iter().any(|joint| joint.known.is_some())
+    }
+
+    /// Whether a motor turns a combination of several joints, so that the torque of a joint is no multiple of
+    /// one motor's signal.
+    #[must_use]
+    pub fn has_coupled_motors(&self) -> bool {
+        let mut joints = self.joints.iter();
+        joints.any(|joint| joint.motor.is_some() && joint.variable.len() > 1)
+    }
+
+    /// Whether a body of the leg is the payload of a robot without platform: a fixed joint with the name
+    /// `payload`.
+    #[must_use]
+    pub fn carries_payload(&self) -> bool {
+        let mut joints = self.joints.iter();
+        joints.any(|joint| joint.kind.value == JointKind::Fixed && joint.name.value == "payload")
+    }
+}
+
+/// Reads `[identification.known]`: values by name, SI units. Friction is nothing that a scale or a drawing
+/// tells.
+pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f64)> {
+    use StandardParameter as P;
+    let mut known = Vec::new();
+    for one in parameters(item, robot) {
+        let report = |message: String, help: &str| {
+            let error = Diagnostic::new(Code::KNOWN, message, one.name.span.clone());
+            item.context.report(error.help(help));
+        };
+        match one.symbol {
+            friction if friction.follows_rate() || friction == P::Off => report(
+                format!(
+                    "friction and offsets are not known exactly, `{}` is one",
+                    one.name.value
+                ),
+                "give masses, first moments, inertias or springs; friction is identified",
+            ),
+            P::M | P::Xx | P::Yy | P::Zz | P::Ia if one.value <= 0.0 => report(
+                format!(
+                    "masses and moments of inertia are positive, but `{}` is not",
+                    one.name.value
+                ),
+                "leave out what is not known",
+            ),
+            _ => known.push((one.name.value.clone(), one.value)),
+        }
+    }
+    known
+}
+
+/// Reads the switch `gains`, which needs a known value and drives of one joint each.
+pub(crate) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Inventory<'_>) -> bool {
+    if item.boolean() != Some(true) {
+        return false;
+    }
+    if robot.legs.iter().any(Leg::has_coupled_motors) {
+        let help = "leave out `gains`; a gain of a motor scales its `torque_gain` in [data]";
+        item.context
+            .report(item.error(Code::CONTRADICTION, COUPLED_MOTORS).help(help));
+        return false;
+    }
+    if robot.legs.iter().any(Leg::has_known_torques) {
+        let help = "leave out `gains`, or the key `known` of the joints";
+        item.context
+            .report(item.error(Code::CONTRADICTION, KNOWN_TORQUES).help(help));
+        return false;
+    }
+    if known.is_empty() {
+        let error = item.error(
+            Code::KNOWN,
+            "gains are identified relative to what is known, and nothing is",
+        );
+        let help = "give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"";
+        item.context.report(error.help(help));
+    }
+    true
+}

@@ -1,0 +1,110 @@
+//! Names of payloads, of which different runs carry different ones.
+
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::robot::inventory::Inventory;
+use crate::robot::model::{Leg, Spanned};
+use crate::toml_text::reader::{Item, Table};
+use crate::toml_text::scope::is_word;
+
+/// Most payloads of a robot.
+const MOST: usize = 100;
+
+/// Reads the key `payloads`: different words, of a robot that may carry a payload.
+pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<String>> {
+    let Some(item) = table.get("payloads") else {
+        return Vec::new();
+    };
+    let Some(given) = item.strings() else {
+        return Vec::new();
+    };
+    if !has_payload(robot) {
+        let error = item.error(
+            Code::PAYLOAD,
+            "payloads have names, but the robot has no payload",
+        );
+        item.context.report(error.help(help(robot)));
+    }
+    if given.is_empty() || given.len() > MOST {
+        let error = item.error(
+            Code::PAYLOAD,
+            format!("`payloads` has {} names", given.len()),
+        );
+        let help =
+            format!("give 1 to {MOST} names, or leave the key out where there is one payload");
+        item.context.report(error.help(help));
+    }
+    let mut names: Vec<Spanned<String>> = Vec::new();
+    for name in given {
+        let report = |message: String, help: &str| {
+            let error = Diagnostic::new(Code::PAYLOAD, message, name.span.clone());
+            item.context.report(error.help(help));
+        };
+        if names.iter().any(|one| one.value == name.value) {
+            let message = format!("the payload `{}` is listed twice", name.value);
+            report(message, "payloads of different names are different bodies");
+        } else if !is_word(&name.value) {
+            let message = format!("`{}` cannot be the name of a payload", name.value);
+            report(
+                message,
+                "its parameters are named after it: use letters, digits and underscores",
+            );
+        } else {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Whether a robot may carry a payload: identification tells it from other bodies by its parameters' names, which
+/// have the name of their leg behind them where there are several.
+pub(crate) fn has_payload(robot: &Inventory<'_>) -> bool {
+    match robot.platform {
+        Some(platform) => platform.payload.is_some(),
+        None => robot.legs.len() == 1 && robot.legs.iter().any(Leg::carries_payload),
+    }
+}
+
+/// Where a payload is described.
+pub(crate) fn help(robot: &Inventory<'_>) -> &'static str {
+    match robot.platform {
+        Some(_) => "describe it in a table [platform.payload]",
+        None if robot.legs.len() > 1 => {
+            "payloads are described of robots with a platform, or without loops: describe what a skeleton, a chain or a branch carries as a body of its own, and loaded runs in a description of the loaded robot"
+        }
+        None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
+    }
+}
+
+/// What a run says of its payload: whether there is one, and its name where payloads have names.
+pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Option<String>) {
+    let known = || robot.payloads.iter().map(|one| one.value.as_str());
+    let list = || known().collect::<Vec<_>>().join(", ");
+    if let Some(name) = item.value.as_str() {
+        if known().any(|one| one == name) {
+            return (true, Some(name.to_owned()));
+        }
+        let error = item.error(Code::PAYLOAD, format!("there is no payload `{name}`"));
+        let help = match known().next() {
+            None => String::from(
+                "name the payloads of the robot at the head of the file, payloads = [\"A\", \"B\"], or write payload = true",
+            ),
+            Some(_) => did_you_mean(name, known())
+                .unwrap_or_else(|| format!("its payloads are {}", list())),
+        };
+        item.context.report(error.help(help));
+        return (false, None);
+    }
+    let loaded = item.boolean().unwrap_or(false);
+    if loaded && !has_payload(robot) {
+        let error = item.error(Code::PAYLOAD, "the robot has no payload");
+        item.context.report(error.help(help(robot)));
+    } else if loaded && known().next().is_some() {
+        let error = item.error(
+            Code::PAYLOAD,
+            "the robot has several payloads: the run has to say which",
+        );
+        item.context
+            .report(error.help(format!("give its name, one of {}", list())));
+    }
+    (loaded, None)
+}

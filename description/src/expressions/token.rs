@@ -1,0 +1,97 @@
+//! The tokens of an expression.
+
+use crate::diagnostic::Span;
+use crate::expressions::value::Fault;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Number,
+    Name,
+    /// One of + - * / ^ ( ) and the comma.
+    Symbol(char),
+}
+
+/// A token and the bytes of the expression that it takes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Token<'t> {
+    pub(crate) kind: Kind,
+    pub(crate) text: &'t str,
+    pub(crate) span: Span,
+}
+
+impl Token<'_> {
+    pub(crate) fn is(&self, symbol: char) -> bool {
+        self.kind == Kind::Symbol(symbol)
+    }
+}
+
+/// Splits an expression into tokens.
+pub(crate) fn tokens(text: &str) -> Result<Vec<Token<'_>>, (Fault, Span)> {
+    let mut list = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let (kind, length) = match first {
+            c if c.is_whitespace() => {
+                at += c.len_utf8();
+                continue;
+            }
+            '0'..='9' | '.' => (Kind::Number, number_length(rest)),
+            c if c.is_ascii_alphabetic() || c == '_' => (Kind::Name, name_length(rest)),
+            '+' | '-' | '*' | '/' | '^' | '(' | ')' | ',' => (Kind::Symbol(first), 1),
+            c => {
+                let fault = Fault::new(format!("unexpected character `{c}` in an expression"));
+                return Err((fault.help(substitute(c)), at..at + c.len_utf8()));
+            }
+        };
+        list.push(Token {
+            kind,
+            text: &rest[..length],
+            span: at..at + length,
+        });
+        at += length;
+    }
+    Ok(list)
+}
+
+/// What is to be written instead of a character that looks like mathematics and is none here.
+fn substitute(c: char) -> &'static str {
+    match c {
+        '°' => "write degrees as `deg`, for instance \"90 deg\"",
+        '·' | '×' => "write products with `*`",
+        'π' => "write `pi`",
+        'µ' | 'μ' => "write micrometres as `um`",
+        '²' | '³' => "write powers with `^`, for instance `m/s^2`",
+        '−' | '–' => "write the minus sign as `-`",
+        _ => "an expression is made of numbers with units, names, + - * / ^ and parentheses",
+    }
+}
+
+fn name_length(text: &str) -> usize {
+    text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+        .unwrap_or(text.len())
+}
+
+/// Length of a decimal number with an optional exponent.
+fn number_length(text: &str) -> usize {
+    let digits = |from: usize| {
+        let rest = text.get(from..).unwrap_or("");
+        from + rest
+            .find(|c: char| !(c.is_ascii_digit() || c == '_'))
+            .unwrap_or(rest.len())
+    };
+    let mut end = digits(0);
+    if text[end..].starts_with('.') {
+        end = digits(end + 1);
+    }
+    if text[end..].starts_with(['e', 'E']) {
+        let signed = text[end + 1..].starts_with(['+', '-']);
+        let start = end + 1 + usize::from(signed);
+        let exponent = digits(start);
+        // "2 em" has a unit and no exponent.
+        if exponent > start {
+            end = exponent;
+        }
+    }
+    end
+}

@@ -1,0 +1,52 @@
+//! TOML to [`Description`]: every field evaluated and with its place in the text.
+//!
+//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. Reading
+//! it goes down the tables: [`parse`] reads the root, which reads constants, platform, shapes (legs
+//! written once) and placements (shapes evaluated with values of their own), and then the tables
+//! about experiments, which name what came before. All errors are noted with their places and
+//! reported together.
+//!
+//! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
+
+pub mod diagnostic;
+mod document;
+mod effort;
+mod experiments;
+mod expressions;
+mod parameters_file;
+mod robot;
+mod root;
+#[cfg(test)]
+mod tests;
+mod toml_text;
+
+pub use diagnostic::{Diagnostics, Source};
+pub use document::{BaseColumns, Description};
+pub use effort::Effort;
+pub use experiments::controller::Controller;
+pub use experiments::data::{Clock, Data, Factor};
+pub use experiments::drives::Drives;
+pub use experiments::excitation::Excitation;
+pub use experiments::experiment::{Experiment, Run, Term, TrueParameter};
+pub use experiments::gravity::GAINS_AND_GRAVITY;
+pub use experiments::known::{COUPLED_MOTORS, KNOWN_TORQUES};
+pub use experiments::prior::Prior;
+pub use experiments::settings::{Friction, Identification, Instruments, Normalisation, Reversals};
+pub use expressions::formula::{Formula, Spring};
+pub use overact_core::StandardParameter;
+pub use parameters_file::parse_parameters;
+pub use robot::actuator_names::ActuatorNames;
+pub use robot::inventory::{Body, independent_joints};
+pub use robot::model::{
+    BodyIndex, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, SIX, Spanned,
+};
+pub use robot::motion::TwistCoordinate;
+pub use toml_text::place::place;
+
+/// Reads a description.
+///
+/// # Errors
+/// Everything that is wrong with it, in order of the text.
+pub fn parse(source: &Source) -> Result<Description, Diagnostics> {
+    root::read(source)
+}

@@ -1,0 +1,76 @@
+//! Joints of several axes as joints of one: what a word of `type` stands for.
+
+use crate::robot::joint_shape::JointShape;
+use crate::robot::model::{JointKind, Spanned};
+use crate::robot::word::{Axis, Word};
+use overact_core::StandardParameter;
+
+/// The joint as its axes. `first` is what its table says, with the parameters of the last body; `at` is the
+/// number of the first axis in the leg.
+pub(crate) fn split<'c, 't>(
+    word: Word,
+    first: JointShape<'c, 't>,
+    at: usize,
+) -> Vec<JointShape<'c, 't>> {
+    let axes = word.axes();
+    if axes.is_empty() {
+        return vec![first];
+    }
+    let (name, span) = (first.name.clone(), first.span.clone());
+    let (parameters, kind) = (first.parameters.clone(), first.kind.clone());
+    let own = |axis: &Axis| match axis.0 {
+        "" => name.clone(),
+        ending => Spanned::new(format!("{}_{ending}", name.value), name.span.clone()),
+    };
+    // Between the axes there is friction, and nothing that has a mass.
+    let between = |axis: &Axis| -> Vec<StandardParameter> {
+        let of_joint = parameters.iter().copied().filter(|p| !p.is_inertial());
+        match axis.1 {
+            JointKind::Fixed => Vec::new(),
+            _ if word == Word::Helical => Vec::new(),
+            _ => of_joint.collect(),
+        }
+    };
+    let mut joints = vec![first];
+    for (place, axis) in axes.iter().enumerate().skip(1) {
+        joints.push(JointShape {
+            name: own(axis),
+            kind: Spanned::new(axis.1, kind.span.clone()),
+            antecedent: (at + place).checked_sub(1),
+            steps: [const { None }; 6],
+            turned: axis.2,
+            actuated: false,
+            parameters: Vec::new(),
+            spring: None,
+            known: None,
+            stribeck: None,
+            load: None,
+            pitch: None,
+            word,
+            called: name.value.clone(),
+            span: span.clone(),
+        });
+    }
+    let last = joints.len() - 1;
+    for (place, (joint, axis)) in joints.iter_mut().zip(axes).enumerate() {
+        joint.name = own(axis);
+        joint.parameters = match place == last {
+            true => parameters.clone(),
+            false => between(axis),
+        };
+    }
+    if let (Word::Helical, [slide, turn]) = (word, joints.as_mut_slice()) {
+        turned(slide, turn);
+    }
+    joints
+}
+
+/// Gives the turn of a helical joint what its table says of the motion; the slide keeps the place.
+fn turned<'c, 't>(slide: &mut JointShape<'c, 't>, turn: &mut JointShape<'c, 't>) {
+    turn.steps[4] = slide.steps[4].take();
+    turn.actuated = std::mem::take(&mut slide.actuated);
+    turn.spring = slide.spring.take();
+    turn.known = slide.known.take();
+    turn.stribeck = slide.stribeck.take();
+    turn.load = slide.load.take();
+}

@@ -1,0 +1,133 @@
+//! What a description says that may not be meant, though it can be read: numbers without a unit that are those of
+//! another one, a payload that is written with a capital, expressions of columns that end too early.
+
+use crate::robot::model::Spanned;
+use crate::toml_text::reader::{Context, Item};
+use overact_exact::{Angle, Number};
+
+/// Lengths of robots that are longer than this are mostly millimetres, m.
+const LONGEST: f64 = 50.0;
+
+/// Notes a bare angle above a turn.
+pub(crate) fn angle(item: &Item<'_, '_>, angle: Angle) {
+    let (_, radians) = angle.parts();
+    let bare = radians.value();
+    if bare.abs() > std::f64::consts::TAU && !item.context.text(&item.span).contains("rad") {
+        let what = format!(
+            "`{}`: a number without a unit is in rad, and {bare} rad are more than a turn: {bare} deg?",
+            item.key.value
+        );
+        item.context.doubt(what, &item.span);
+    }
+}
+
+/// Notes a length that hardly any robot has.
+pub(crate) fn length(item: &Item<'_, '_>, length: Number) {
+    let metres = length.value();
+    if metres.abs() > LONGEST {
+        let bare = !item.context.text(&item.span).contains(" m");
+        let unit = match bare {
+            true => format!("a number without a unit is in m: {metres} mm?"),
+            false => String::from("mm?"),
+        };
+        let what = format!("`{}` is {metres} m long, and {unit}", item.key.value);
+        item.context.doubt(what, &item.span);
+    }
+}
+
+/// Notes the name of a fixed joint that is `payload` but for capitals.
+pub(crate) fn payload(context: &Context<'_>, name: &Spanned<String>) {
+    let Spanned { value: name, span } = name;
+    if name != "payload" && name.eq_ignore_ascii_case("payload") {
+        let what = format!(
+            "the fixed joint `{name}` is a body like others: did you mean `payload`, which some runs carry and others do not?"
+        );
+        context.doubt(what, span);
+    }
+}
+
+/// Functions of other languages that expressions of columns do not have.
+const FOREIGN: [&str; 14] = [
+    "deg2rad", "rad2deg", "radians", "degrees", "log", "log10", "ln", "min", "max", "round",
+    "diff", "gradient", "mean", "cumsum",
+];
+
+/// Notes an expression of columns that can't be read as one; a column of a log may have such a name.
+pub(crate) fn column(item: &Item<'_, '_>, text: &str) {
+    if let Some(why) = broken(text) {
+        let what = format!(
+            "`{}`: \"{text}\" is no expression of columns, {why}; it is taken for the name of a column",
+            item.key.value
+        );
+        item.context.doubt(what, &item.span);
+    }
+}
+
+/// Why a text that looks like an expression is none.
+fn broken(text: &str) -> Option<String> {
+    let text = text.trim();
+    if text.ends_with(['+', '-', '*', '/', '^']) {
+        return Some(String::from("something is missing at its end"));
+    }
+    let count = |sign: char| text.matches(sign).count();
+    if count('(') != count(')') {
+        return Some(String::from("its parentheses do not fit"));
+    }
+    if count('\'') % 2 == 1 {
+        return Some(String::from("a quotation mark is missing"));
+    }
+    let called = |name: &&&str| text.starts_with(&format!("{name}("));
+    if let Some(name) = FOREIGN.iter().find(called) {
+        let instead = match *name {
+            "deg2rad" | "radians" => ": write `* pi/180` behind the column",
+            _ => "",
+        };
+        return Some(format!("there is no function `{name}`{instead}"));
+    }
+    let of_file = text
+        .strip_prefix("file")
+        .and_then(|rest| rest.split_once('.'));
+    let is_of_file = of_file.is_some_and(|(number, _)| number.parse::<usize>().is_ok());
+    let unit = text.rsplit_once(' ').map(|(_, unit)| unit);
+    let unit =
+        unit.filter(|unit| is_of_file && crate::expressions::dimension::UNITS.contains(unit));
+    unit.map(|unit| match unit {
+        "deg" => String::from(
+            "a unit stands behind the column: write `* pi/180`, or `position_scale = \"1 deg\"`",
+        ),
+        _ => format!(
+            "the unit `{unit}` stands behind the column: give `position_scale` or `torque_gain`"
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::broken;
+
+    #[test]
+    fn expressions_and_names_are_told_apart() {
+        for good in [
+            "q_1",
+            "file1.Joint_3",
+            "file1.Joint_3 * pi/180",
+            "'motor 1' / 50",
+            "q(:,2)",
+            "Torque (N m)",
+            "motor 1 deg",
+            "-$3",
+            "sin($1)",
+        ] {
+            assert_eq!(broken(good), None, "{good}");
+        }
+        for bad in [
+            "file1.Joint_3 *",
+            "(a + b",
+            "'motor 1",
+            "deg2rad(file1.Joint_3)",
+            "file1.Joint_3 deg",
+        ] {
+            assert!(broken(bad).is_some(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What the tables after the legs need to know of the robot: its actuators, coordinates and
+//! parameters by name.
+
+use crate::expressions::dimension::Dimension;
+use crate::robot::actuator_names::ActuatorNames;
+use crate::robot::joint;
+use crate::robot::model::{JointKind, Leg, Motion, Platform, Spanned, actuators};
+use crate::robot::parameter::dimension;
+use crate::toml_text::scope::Scope;
+use overact_core::StandardParameter;
+
+/// A body that has parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Body {
+    /// A joint and the body behind it.
+    Joint {
+        /// Index of the leg.
+        leg: usize,
+        /// Index of the joint in its leg.
+        joint: usize,
+    },
+    /// The platform.
+    Platform,
+    /// The payload.
+    Payload,
+}
+
+/// What the tables that follow the legs need to know of the robot.
+pub(crate) struct Inventory<'r> {
+    pub(crate) platform: Option<&'r Platform>,
+    pub(crate) legs: &'r [Leg],
+    pub(crate) scope: &'r Scope,
+    /// Names of the payloads, where there are several.
+    pub(crate) payloads: &'r [Spanned<String>],
+}
+
+impl Inventory<'_> {
+    /// Kind of each actuated joint.
+    pub(crate) fn actuator_kinds(&self) -> Vec<JointKind> {
+        let kind =
+            |(leg, joint): (usize, usize)| Some(self.legs.get(leg)?.joints.get(joint)?.kind.value);
+        actuators(self.legs).into_iter().filter_map(kind).collect()
+    }
+
+    /// Names and dimensions of the r coordinates.
+    pub(crate) fn coordinates(&self) -> Vec<(String, Dimension)> {
+        if let Some(platform) = self.platform {
+            return platform_coordinates(platform.motion.value);
+        }
+        let own = independent_joints(self.legs).into_iter();
+        own.filter_map(|(name, joint)| Some((name, joint::dimension(joint.kind.value)?)))
+            .collect()
+    }
+
+    /// Names of all standard parameters with their bodies.
+    pub(crate) fn parameters(&self) -> Vec<(String, Body, StandardParameter, Dimension)> {
+        let mut all = Vec::new();
+        let single = self.platform.is_none() && self.legs.len() == 1;
+        for (leg_index, leg) in self.legs.iter().enumerate() {
+            for (index, joint) in leg.joints.iter().enumerate() {
+                let body = Body::Joint {
+                    leg: leg_index,
+                    joint: index,
+                };
+                for symbol in &joint.parameters {
+                    let name = match single {
+                        true => format!("{}_{}", symbol.name(), joint.name.value),
+                        false => {
+                            format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
+                        }
+                    };
+                    let dimension = joint.formula_of(*symbol).map_or_else(
+                        || dimension(*symbol, joint.kind.value),
+                        |spring| spring.dimension,
+                    );
+                    all.push((name, body, *symbol, dimension));
+                }
+            }
+        }
+        let mut free = |body, name: &str, symbols: &[StandardParameter]| {
+            for symbol in symbols {
+                let dimension = dimension(*symbol, JointKind::Fixed);
+                all.push((
+                    format!("{}_{name}", symbol.name()),
+                    body,
+                    *symbol,
+                    dimension,
+                ));
+            }
+        };
+        if let Some(platform) = self.platform {
+            free(Body::Platform, "platform", &platform.parameters);
+            free(
+                Body::Payload,
+                "payload",
+                platform.payload.as_deref().unwrap_or_default(),
+            );
+        }
+        let named = self.of_payloads(&all);
+        all.extend(named);
+        all
+    }
+
+    /// The parameters of the payload once for each of those that have names.
+    fn of_payloads(
+        &self,
+        all: &[(String, Body, StandardParameter, Dimension)],
+    ) -> Vec<(String, Body, StandardParameter, Dimension)> {
+        let is_load = |name: &str, symbol: StandardParameter| {
+            name.strip_prefix(symbol.name()) == Some("_payload") && symbol.is_inertial()
+        };
+        let loads = all
+            .iter()
+            .filter(|(name, _, symbol, _)| is_load(name, *symbol));
+        let loads: Vec<_> = loads.collect();
+        let of = |load: &Spanned<String>| {
+            let own = loads.iter().map(|(name, body, symbol, dimension)| {
+                (format!("{name}_{}", load.value), *body, *symbol, *dimension)
+            });
+            own.collect::<Vec<_>>()
+        };
+        self.payloads.iter().flat_map(of).collect()
+    }
+
+    /// What the actuators are called.
+    pub(crate) fn actuator_names(&self) -> ActuatorNames {
+        let name = |(leg, joint): (usize, usize)| {
+            let leg = self.legs.get(leg)?;
+            Some((
+                leg.name.value.as_str(),
+                leg.joints.get(joint)?.name.value.as_str(),
+            ))
+        };
+        let single = self.platform.is_none() && self.legs.len() == 1;
+        ActuatorNames::new(single, actuators(self.legs).into_iter().filter_map(name))
+    }
+}
+
+/// The independent joints of a robot without a platform under the names of its coordinates: those of the first leg
+/// by their own, those of branches with their leg's. Joints of chains follow from them.
+#[must_use]
+pub fn independent_joints(legs: &[Leg]) -> Vec<(String, &crate::robot::model::Joint)> {
+    let mut all = Vec::new();
+    let free = legs.iter().enumerate().filter(|(_, leg)| leg.end.is_none());
+    for (at, leg) in free {
+        let own = leg.joints.iter().enumerate();
+        for (_, joint) in own.filter(|(index, joint)| joint.is_independent(*index)) {
+            let name = &joint.name.value;
+            all.push(match at {
+                0 => (name.clone(), joint),
+                _ => (format!("{}.{name}", leg.name.value), joint),
+            });
+        }
+    }
+    all
+}
+
+fn platform_coordinates(motion: Motion) -> Vec<(String, Dimension)> {
+    let dimension = |name: &str| match name {
+        "x" | "y" | "z" => Dimension::LENGTH,
+        _ => Dimension::ANGLE,
+    };
+    motion
+        .coordinates()
+        .into_iter()
+        .map(|name| (name.to_owned(), dimension(name)))
+        .collect()
+}

@@ -1,0 +1,46 @@
+//! A joint's table, read without evaluating its expressions.
+
+use crate::diagnostic::Span;
+use crate::robot::model::{JointKind, Spanned};
+use crate::robot::word::Word;
+use crate::toml_text::reader::Item;
+use overact_core::StandardParameter;
+
+/// A joint's table.
+pub(crate) struct JointShape<'c, 't> {
+    pub(crate) name: Spanned<String>,
+    pub(crate) kind: Spanned<JointKind>,
+    pub(crate) antecedent: Option<usize>,
+    /// γ, b, α, d, θ, r where they are given.
+    pub(crate) steps: [Option<Item<'c, 't>>; 6],
+    /// Whether γ and α are right angles instead: an axis within a joint of several.
+    pub(crate) turned: bool,
+    pub(crate) actuated: bool,
+    pub(crate) parameters: Vec<StandardParameter>,
+    pub(crate) spring: Option<Item<'c, 't>>,
+    pub(crate) known: Option<Item<'c, 't>>,
+    pub(crate) stribeck: Option<Item<'c, 't>>,
+    pub(crate) load: Option<Item<'c, 't>>,
+    /// Of the slide of a helical joint, which follows the turn behind it, what it goes along for a turn.
+    pub(crate) pitch: Option<Item<'c, 't>>,
+    /// The word of the table that it is an axis of, and the name of the table's joint.
+    pub(crate) word: Word,
+    pub(crate) called: String,
+    pub(crate) span: Span,
+}
+
+/// Keys of a joint's geometry, in the order of the MDH step.
+pub(crate) const STEPS: [&str; 6] = ["gamma", "b", "alpha", "d", "theta", "r"];
+
+impl JointShape<'_, '_> {
+    /// Name of the joint's variable in expressions of the leg: `q1`, `q_elbow`.
+    pub(crate) fn variable(&self) -> String {
+        let name = &self.name.value;
+        let numbered = name.starts_with(|c: char| c.is_ascii_digit());
+        if numbered {
+            format!("q{name}")
+        } else {
+            format!("q_{name}")
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The tables `[[leg.NAME.motor]]`: transmissions between motors and joints.
+//!
+//! A motor turns a combination c of joint variables behind its gear: θ = ratio × c. Where several joints are
+//! coupled its rotor and its friction act on c and not on any joint, and their torque reaches the joints by
+//! the combination's factors. In the model a motor is a joint that follows others and carries no body.
+
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::expressions::dimension::Dimension;
+use crate::expressions::value::Value;
+use crate::robot::friction;
+use crate::robot::model::{Joint, JointKind, Spanned};
+use crate::robot::parameters::Owner;
+use crate::toml_text::reader::{Item, Table};
+use crate::toml_text::scope::{Scope, is_word};
+use overact_core::StandardParameter;
+use overact_exact::{Angle, Number};
+
+/// The table of a motor, its expressions not evaluated.
+pub(crate) struct MotorShape<'c, 't> {
+    name: Spanned<String>,
+    /// What it turns.
+    turns: Option<Item<'c, 't>>,
+    ratio: Option<Item<'c, 't>>,
+    stribeck: Option<Item<'c, 't>>,
+    /// Parameters where they are given.
+    parameters: Option<Vec<StandardParameter>>,
+    span: Span,
+}
+
+/// Reads the motors of a leg whose joints have these names.
+pub(crate) fn shapes<'c, 't>(
+    item: &Item<'c, 't>,
+    joints: &[Spanned<String>],
+) -> Vec<MotorShape<'c, 't>> {
+    let mut motors: Vec<MotorShape<'c, 't>> = Vec::new();
+    for (index, table) in item.tables("a motor").iter().enumerate() {
+        let motor = shape(table, index);
+        let mut names = joints.iter().chain(motors.iter().map(|other| &other.name));
+        if names.any(|name| name.value == motor.name.value) {
+            let message = format!(
+                "there are two joints or motors `{}` in this leg",
+                motor.name.value
+            );
+            let help = "a motor without a name is called by its number, `m1`";
+            table.context.report(
+                Diagnostic::new(Code::SAME_NAME, message, motor.name.span.clone()).help(help),
+            );
+        }
+        motors.push(motor);
+    }
+    motors
+}
+
+fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
+    let number = || Spanned::new(format!("m{}", index + 1), table.span.clone());
+    let given = table.get("name").and_then(|item| item.string());
+    let name = given.unwrap_or_else(number);
+    if !is_word(&name.value) || name.value == "base" {
+        let message = format!("`{}` cannot be the name of a motor", name.value);
+        let diagnostic = Diagnostic::new(Code::BAD_NAME, message, name.span.clone());
+        let help = "use letters, digits and underscores, but not \"base\"";
+        table.context.report(diagnostic.help(help));
+    }
+    let help = "what the motor turns behind its gear, for instance turns = \"q5 + q6\"";
+    let turns = table.require("turns", help);
+    let parameters = table.get("parameters");
+    let motor = MotorShape {
+        name,
+        turns,
+        ratio: table.get("ratio"),
+        stribeck: table.get("stribeck"),
+        parameters: parameters.and_then(|item| item.parameters(Owner::Motor)),
+        span: table.span.clone(),
+    };
+    table.finish();
+    motor
+}
+
+impl MotorShape<'_, '_> {
+    /// The motor as a joint that follows others; its variable is what is given, in joints that may follow
+    /// others themselves. `None` after an error.
+    pub(crate) fn joint(&self, scope: &Scope) -> Option<Joint> {
+        let ratio = match &self.ratio {
+            Some(item) => gear_ratio(item, scope),
+            None => Some(Number::ONE),
+        };
+        let item = self.turns.as_ref()?;
+        let value = item.evaluate(scope)?;
+        if let Some(problem) = problem(&value, item) {
+            item.context.report_once(problem);
+            return None;
+        }
+        let kind = match value.dimension {
+            Dimension::LENGTH => JointKind::Prismatic,
+            _ => JointKind::Revolute,
+        };
+        let coupled = value.terms.len() > 1;
+        let stribeck = self.stribeck.as_ref();
+        let mut parameters = self.parameters.clone().unwrap_or_else(|| own(coupled));
+        parameters.extend(stribeck.map(|_| StandardParameter::Fst));
+        let here = |value: Angle| Spanned::new(value, self.span.clone());
+        let zero = Spanned::new(Number::ZERO, self.span.clone());
+        Some(Joint {
+            name: self.name.clone(),
+            kind: Spanned::new(kind, item.span.clone()),
+            antecedent: None,
+            gamma: here(Angle::ZERO),
+            b: zero.clone(),
+            alpha: here(Angle::ZERO),
+            d: zero.clone(),
+            theta: here(Angle::ZERO),
+            r: zero,
+            variable: value.terms,
+            actuated: false,
+            parameters,
+            home: Number::ZERO,
+            motor: Some(ratio?),
+            spring: None,
+            known: None,
+            load: None,
+            stribeck: stribeck.and_then(|item| friction::stribeck(item, kind, scope)),
+            span: self.span.clone(),
+        })
+    }
+}
+
+/// The parameters of a motor whose table names none: a motor of one joint shares the joint's, and offsets of
+/// motors are told by the joints'.
+fn own(coupled: bool) -> Vec<StandardParameter> {
+    use StandardParameter as P;
+    match coupled {
+        true => vec![P::Ia, P::Fv, P::Fs],
+        false => Vec::new(),
+    }
+}
+
+/// A gear ratio: a number that is not zero; a negative one turns the direction round.
+fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
+    let ratio = item.number(Dimension::NONE, scope)?.value;
+    if ratio.is_zero() {
+        let error = item.error(Code::TRANSMISSION, "a gear of ratio 0 turns nothing");
+        let help = "give the turns of the motor for one of what it turns, for instance 100";
+        item.context.report(error.help(help));
+        return None;
+    }
+    Some(ratio)
+}
+
+/// Why a value cannot be what a motor turns.
+fn problem(value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
+    if value.terms.is_empty() {
+        let error = item.error(
+            Code::TRANSMISSION,
+            "a motor that turns no joint drives nothing",
+        );
+        return Some(error.help("name the joint variables, for instance \"q5 + q6\""));
+    }
+    if !value.scalar.is_zero() {
+        let error = item.error(
+            Code::TRANSMISSION,
+            "a motor turns joint variables without a constant",
+        );
+        let help = "what its encoder shows too much stands in `position_offset` of [data]";
+        return Some(error.help(help));
+    }
+    if !value.dimension.fits(Dimension::ANGLE) && !value.dimension.fits(Dimension::LENGTH) {
+        let found = value.dimension.name();
+        let error = item.error(
+            Code::TRANSMISSION,
+            format!("a motor turns an angle or a length, found {found}"),
+        );
+        return Some(error.help("the factors of joint variables are plain fractions"));
+    }
+    None
+}

@@ -1,0 +1,168 @@
+//! Joints of several axes: words for what is otherwise written axis by axis.
+//!
+//! | type | axes |
+//! |---|---|
+//! | `cylindrical` | a slide along z and a turn about it |
+//! | `universal` | turns about z and about x |
+//! | `spherical` | turns about z, x and y |
+//! | `planar` | slides along x and y, a turn about z |
+//! | `helical` | a slide along z that follows a turn about it |
+//!
+//! The first axis is where the table puts it. From one axis to the next the frame is turned by γ = α = 90°, which
+//! puts z where x was: three such steps lead back to where they started, and a spherical joint is far from the
+//! positions at which its first and last axes are parallel. The bodies between the axes have no mass, and the last
+//! axis, which moves the body behind the joint, has the joint's name: a universal joint `cross` has the axes
+//! `cross_1` and `cross`. A helical joint has one variable, that of its turn, and what a joint of one axis can have.
+
+use crate::diagnostic::Code;
+use crate::robot::model::JointKind;
+use crate::toml_text::reader::Item;
+
+/// A word for a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Word {
+    /// A joint of one axis, or none.
+    Simple(JointKind),
+    Cylindrical,
+    Universal,
+    Spherical,
+    Planar,
+    Helical,
+}
+
+/// The words of `type`.
+pub(crate) const WORDS: [(&str, Word); 8] = [
+    ("revolute", Word::Simple(JointKind::Revolute)),
+    ("prismatic", Word::Simple(JointKind::Prismatic)),
+    ("fixed", Word::Simple(JointKind::Fixed)),
+    ("cylindrical", Word::Cylindrical),
+    ("universal", Word::Universal),
+    ("spherical", Word::Spherical),
+    ("planar", Word::Planar),
+    ("helical", Word::Helical),
+];
+
+/// An axis of a joint: what its name ends with if it is not the last, its kind, and whether the frame is turned before it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis(
+    pub(crate) &'static str,
+    pub(crate) JointKind,
+    pub(crate) bool,
+);
+
+impl Word {
+    /// The axes of a joint of several.
+    pub(crate) const fn axes(self) -> &'static [Axis] {
+        use JointKind::{Fixed, Prismatic, Revolute};
+        match self {
+            Self::Simple(_) => &[],
+            Self::Cylindrical => &[Axis("slide", Prismatic, false), Axis("", Revolute, false)],
+            Self::Universal => &[Axis("1", Revolute, false), Axis("", Revolute, true)],
+            Self::Spherical => &[
+                Axis("1", Revolute, false),
+                Axis("2", Revolute, true),
+                Axis("", Revolute, true),
+            ],
+            Self::Planar => &[
+                Axis("place", Fixed, false),
+                Axis("x", Prismatic, true),
+                Axis("y", Prismatic, true),
+                Axis("", Revolute, true),
+            ],
+            Self::Helical => &[Axis("slide", Prismatic, false), Axis("", Revolute, false)],
+        }
+    }
+
+    /// Kind of the joint that the table's own keys describe: the first axis.
+    pub(crate) fn first(self) -> JointKind {
+        match self {
+            Self::Simple(kind) => kind,
+            other => other
+                .axes()
+                .first()
+                .map_or(JointKind::Revolute, |axis| axis.1),
+        }
+    }
+
+    /// Kind of the joint whose body the next one starts from.
+    pub(crate) fn last(self) -> JointKind {
+        let last = self.axes().last();
+        last.map_or_else(|| self.first(), |axis| axis.1)
+    }
+
+    /// How many joints it stands for.
+    pub(crate) fn count(self) -> usize {
+        self.axes().len().max(1)
+    }
+
+    /// Reports what is said of a joint of several axes that only one of one axis can have.
+    pub(crate) fn check<'i, 'c: 'i, 't: 'c>(
+        self,
+        said: impl IntoIterator<Item = &'i Item<'c, 't>>,
+    ) {
+        if let Self::Simple(_) | Self::Helical = self {
+            return;
+        }
+        for item in said {
+            let message = format!("`{}` is said of a joint of one axis", item.key.value);
+            let help = "write the axes of this joint as joints of their own, of type \"revolute\" and \"prismatic\"";
+            item.context
+                .report(item.error(Code::CONTRADICTION, message).help(help));
+        }
+    }
+
+    /// What a joint is called with its article.
+    fn with_article(self) -> &'static str {
+        match self {
+            Self::Simple(JointKind::Revolute) => "a revolute joint",
+            Self::Simple(JointKind::Prismatic) => "a prismatic joint",
+            Self::Simple(JointKind::Fixed) => "a fixed joint",
+            Self::Cylindrical => "a cylindrical joint",
+            Self::Universal => "a universal joint",
+            Self::Spherical => "a spherical joint",
+            Self::Planar => "a planar joint",
+            Self::Helical => "a helical joint",
+        }
+    }
+
+    /// Where the variables of a joint of a name may stand, for whoever wrote one of them in another key.
+    pub(crate) fn variables(self, name: &str) -> String {
+        let own = self.with_article();
+        let key = match self {
+            Self::Simple(JointKind::Fixed) => {
+                return format!(
+                    "{own} has no variable: use type = \"revolute\" or \"prismatic\", or leave the variable out"
+                );
+            }
+            Self::Simple(JointKind::Revolute) | Self::Helical => {
+                return format!("the variable of {own} is the angle `q` in theta");
+            }
+            Self::Simple(JointKind::Prismatic) => {
+                return format!("the variable of {own} is the length `q` in r");
+            }
+            Self::Cylindrical => Some("r"),
+            Self::Universal | Self::Spherical => Some("theta"),
+            Self::Planar => None,
+        };
+        let axes = self.axes().iter().filter_map(|axis| {
+            let what = match axis.1 {
+                JointKind::Revolute => "turn",
+                JointKind::Prismatic => "slide",
+                JointKind::Fixed => return None,
+            };
+            let called = match axis.0 {
+                "" => name.to_owned(),
+                ending => format!("{name}_{ending}"),
+            };
+            Some(format!("`{called}` ({what})"))
+        });
+        let axes: Vec<String> = axes.collect();
+        let rest = match key {
+            Some(key) => format!(
+                "`{key}` may hold `q`, the variable of the first, and the other keys are constants that place it"
+            ),
+            None => "gamma, b, alpha, d, theta and r are constants that place them".to_owned(),
+        };
+        format!("{own} has the axes {}: {rest}", axes.join(", "))
+    }
+}

@@ -1,0 +1,416 @@
+//! The description as a whole.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source};
+use crate::document::{BaseColumns, Description, type_name};
+use crate::effort::Effort;
+use crate::experiments::{controller, data, excitation, experiment, payloads, prior, settings};
+use crate::expressions::dimension::Dimension;
+use crate::robot::inventory::Inventory;
+use crate::robot::model::{Leg, Platform, Spanned, actuators};
+use crate::robot::shape::Shape;
+use crate::robot::{chain, leg, platform, shape};
+use crate::toml_text::reader::{Context, Item, Table};
+use crate::toml_text::scope::Scope;
+use overact_exact::{Number, Ratio};
+use toml::de::DeTable;
+
+/// Words that cannot name a type.
+const KEYWORDS: [&str; 51] = [
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while",
+];
+
+pub(crate) fn read(source: &Source) -> Result<Description, Diagnostics> {
+    let (document, syntax_errors) = DeTable::parse_recoverable(&source.text);
+    if !syntax_errors.is_empty() {
+        return Err(syntax(&syntax_errors));
+    }
+    let context = Context::new(source);
+    // Errors of the file as a whole are shown at its first line.
+    let table = Table::new(&context, document.get_ref(), 0..0, "the description");
+    let description = root(&table);
+    let mut errors = context.into_errors();
+    match description {
+        Some(description) => errors.into_result(description),
+        None => {
+            // Every reader that gives up reports why; a slip there must not read as success.
+            if errors.is_empty() {
+                errors.push(Diagnostic::global(
+                    Code::INCOMPLETE,
+                    "the description is incomplete",
+                ));
+            }
+            Err(errors)
+        }
+    }
+}
+
+/// The parser's first message: what follows a broken line is mostly its consequence.
+pub(crate) fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
+    let place = |error: &&toml::de::Error| error.span().map_or(usize::MAX, |span| span.start);
+    let first = errors.iter().min_by_key(place);
+    let diagnostic = |error: &toml::de::Error| {
+        let message = format!("this is no TOML: {}", error.message());
+        match error.span() {
+            Some(span) => Diagnostic::new(Code::SYNTAX, message, span),
+            None => Diagnostic::global(Code::SYNTAX, message),
+        }
+    };
+    first.map_or_else(Diagnostics::new, |error| diagnostic(error).into())
+}
+
+fn root(table: &Table<'_, '_>) -> Option<Description> {
+    let name = table
+        .require("name", "for instance name = \"MyRobot\"")
+        .and_then(|item| robot_name(&item));
+    let text = |key: &str| {
+        table
+            .get(key)
+            .and_then(|item| item.string())
+            .map(|text| text.value)
+    };
+    let (summary, source) = (
+        text("summary").unwrap_or_default(),
+        text("source").unwrap_or_default(),
+    );
+    let effort = table
+        .get("effort")
+        .and_then(|item| item.choice(&Effort::ALL.map(|e| (e.name(), e))));
+    let base_columns = table
+        .get("base_columns")
+        .and_then(|item| item.choice(&BaseColumns::ALL));
+    let constants = table
+        .get("constants")
+        .and_then(|item| item.table("the table `[constants]`"));
+    let scope = constants
+        .map(|table| Scope::constants(&table))
+        .unwrap_or_default();
+    let gravity = table
+        .get("gravity")
+        .and_then(|i| i.vector(Dimension::ACCELERATION, &scope));
+    let platform_item = table.get("platform");
+    let platform = platform_item
+        .as_ref()
+        .and_then(|item| platform::read(item, &scope));
+    let shapes = shapes(table, &scope);
+    let mut legs = legs(table, &shapes, &scope);
+    chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
+    check_ends(table, &shapes, platform_item.is_some(), &legs);
+    check_actuators(table, platform.as_ref(), &legs);
+    let is_closed = legs.iter().any(|leg| leg.end.is_some());
+    check_motors(table, platform.is_some() || is_closed, &legs);
+    check_springs(table, platform.is_some() || is_closed, &legs);
+    let robot = Inventory {
+        platform: platform.as_ref(),
+        legs: &legs,
+        scope: &scope,
+        payloads: &[],
+    };
+    check_parameter_names(table, &robot);
+    let payloads = payloads::read(table, &robot);
+    let robot = Inventory {
+        payloads: &payloads,
+        ..robot
+    };
+    let (experiment, data) = (table.get("experiment"), table.get("data"));
+    let (settings, loops) = (table.get("identification"), table.get("controller"));
+    let (prior, limits) = (table.get("prior"), table.get("excitation"));
+    table.finish();
+    // Names and numbers in what follows depend on all legs: a leg that failed would make every one
+    // of them wrong.
+    let complete = platform.is_some() == platform_item.is_some() && !legs.is_empty();
+    if !complete || legs.len() != placements(table).len() {
+        return None;
+    }
+    let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
+    let excitation = limits.and_then(|item| excitation::read(&item, &robot));
+    let data = data.and_then(|item| data::data(&item, &robot));
+    let controller = loops.and_then(|item| controller::read(&item, &robot));
+    let prior = prior.and_then(|item| prior::read(&item, &robot));
+    let gravity = gravity.unwrap_or_else(standard_gravity);
+    let identification = settings::identification(settings.as_ref(), &robot, &gravity);
+    Some(Description {
+        name: name?,
+        effort: effort.map(|effort| effort.value),
+        base_columns: base_columns.map(|columns| columns.value),
+        summary,
+        source,
+        gravity,
+        payloads,
+        constants: scope.values(),
+        platform,
+        legs,
+        experiment,
+        excitation,
+        data,
+        controller,
+        prior: prior.unwrap_or_default(),
+        identification,
+        doubts: table.context.doubts(),
+    })
+}
+
+/// 9.81 m/s² down the z axis.
+fn standard_gravity() -> [Number; 3] {
+    let down = Ratio::new(-981, 100).unwrap_or(Ratio::integer(-10));
+    [Number::ZERO, Number::ZERO, Number::ratio(down)]
+}
+
+fn robot_name(item: &Item<'_, '_>) -> Option<Spanned<String>> {
+    let name = item.string()?;
+    let letter = name.value.starts_with(|c: char| c.is_ascii_alphabetic());
+    let keyword = |name: &str| KEYWORDS.contains(&name);
+    if !letter || !crate::toml_text::scope::is_word(&name.value) {
+        let error = item.error(
+            Code::BAD_NAME,
+            format!("\"{}\" cannot be the name of a Rust type", name.value),
+        );
+        item.context
+            .report(error.help("use letters and digits, a letter first, for instance \"DualV\""));
+    } else if keyword(&name.value) || keyword(&type_name(&name.value)) {
+        let error = item.error(
+            Code::BAD_NAME,
+            format!("\"{}\" is a keyword of Rust", name.value),
+        );
+        item.context
+            .report(error.help("choose another name, for instance \"MyRobot\""));
+    }
+    Some(name)
+}
+
+fn shapes<'c, 't>(table: &Table<'c, 't>, scope: &Scope) -> Vec<Shape<'c, 't>> {
+    let help = "write each leg once as [[leg.NAME.joint]] and place it by [[place]]";
+    let Some(item) = table.require("leg", help) else {
+        return Vec::new();
+    };
+    let legs = item
+        .table("the table `[leg]`")
+        .map(|legs| legs.items())
+        .unwrap_or_default();
+    if item.is_table() && legs.is_empty() {
+        table.context.report(
+            item.error(Code::STRUCTURE, "the robot has no leg")
+                .help(help),
+        );
+    }
+    legs.iter()
+        .filter_map(|item| shape::read(item, scope))
+        .collect()
+}
+
+fn placements<'c, 't>(table: &Table<'c, 't>) -> Vec<Table<'c, 't>> {
+    table
+        .get("place")
+        .map(|item| item.tables("a placement"))
+        .unwrap_or_default()
+}
+
+fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<Leg> {
+    let help =
+        "a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place";
+    let wanted = !shapes.is_empty();
+    if wanted && table.require("place", help).is_none() {
+        return Vec::new();
+    }
+    let tables = placements(table);
+    for shape in shapes {
+        let placed = |t: &Table<'_, '_>| {
+            let name = t.get("shape");
+            name.is_some_and(|item| item.value.as_str() == Some(shape.name.value.as_str()))
+        };
+        if !tables.iter().any(placed) {
+            let message = format!("the leg `{}` is never placed", shape.name.value);
+            table.context.report(
+                Diagnostic::new(Code::STRUCTURE, message, shape.name.span.clone()).help(help),
+            );
+        }
+    }
+    leg::read(&placements(table), shapes, scope)
+}
+
+/// A platform needs leg ends; without one there is a single leg, and no end.
+fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, legs: &[Leg]) {
+    let has_skeleton = !platform && shapes.iter().any(|shape| shape.end.is_none());
+    for shape in shapes {
+        let name = &shape.name.value;
+        let diagnostic = match &shape.end {
+            None if platform => {
+                let message = format!("the leg `{name}` has no end on the platform");
+                let help = format!(
+                    "[leg.{name}.end] says where it ends, for instance at = [0, \"0.1 m\", 0]"
+                );
+                Diagnostic::new(Code::STRUCTURE, message, shape.span.clone()).help(help)
+            }
+            Some(end) if !platform && !has_skeleton => {
+                let message = format!("the leg `{name}` ends on a platform, but there is none");
+                let help = "describe it in a table [platform], or a skeleton as a leg without `end`, whose bodies `end.body` names";
+                Diagnostic::new(Code::STRUCTURE, message, end.span.clone()).help(help)
+            }
+            _ => continue,
+        };
+        table.context.report(diagnostic);
+    }
+    // Bodies of chains may carry branches of their own.
+    let has_chains = legs.iter().any(|leg| leg.end.is_some());
+    let is_branch = |leg: &&Leg| {
+        let body = shapes
+            .get(leg.shape)
+            .and_then(|shape| shape.base_body.as_ref());
+        has_chains && body.is_some_and(|body| body.value != chain::GROUND)
+    };
+    let mut skeletons = legs
+        .iter()
+        .filter(|leg| leg.end.is_none() && !is_branch(leg));
+    let _ = skeletons.next();
+    let second = skeletons.next();
+    if let (false, Some(second)) = (platform, second) {
+        let message = "a robot without platform has one leg without an end, and others only on bodies of chains";
+        let help = "branches of a tree are joints whose `antecedent` is not the joint before them; \
+                    those on a body of a chain are legs whose `base.body` names it";
+        table
+            .context
+            .report(Diagnostic::new(Code::STRUCTURE, message, second.span.clone()).help(help));
+    }
+}
+
+/// Springs and known torques are described of robots without loops, whose joints are measured.
+fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
+    if !is_closed {
+        return;
+    }
+    let joints = || legs.iter().flat_map(|leg| &leg.joints);
+    let report = |joint: &crate::robot::model::Joint, what: &str, key: &str| {
+        let message = format!("{what} are described of robots without loops only");
+        let instead = match key {
+            "friction_load" => "",
+            _ => ", and subtract a known torque in `torques` of [data]",
+        };
+        let help = format!("leave `{key}` out{instead}");
+        let error = Diagnostic::new(Code::ACTUATED, message, joint.span.clone());
+        table.context.report_once(error.help(help));
+    };
+    if let Some(joint) = joints().find(|joint| joint.spring.is_some()) {
+        report(joint, "springs", "spring");
+    }
+    if let Some(joint) = joints().find(|joint| joint.load.is_some()) {
+        report(joint, "loads of friction", "friction_load");
+    }
+    if let Some(joint) = joints().find(|joint| joint.known.is_some()) {
+        report(joint, "known torques", "known");
+    }
+}
+
+/// Motors that turn several joints are known of robots without loops: the frame that ends a leg is the last
+/// joint's.
+fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
+    let mut joints = legs.iter().flat_map(|leg| &leg.joints);
+    if let (true, Some(motor)) = (is_closed, joints.find(|joint| joint.motor.is_some())) {
+        let message = "motors of their own are described of robots without loops only";
+        let help =
+            "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
+        let error = Diagnostic::new(Code::ACTUATED, message, motor.span.clone());
+        table.context.report_once(error.help(help));
+    }
+}
+
+/// Without actuators there is nothing to identify from.
+fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
+    let count = actuators(legs).len();
+    let Some(platform) = platform else {
+        let first = legs.iter().flat_map(|leg| &leg.joints).next();
+        // After another error nobody knows which joints were meant to be actuated.
+        if let (0, Some(joint), true) = (count, first, table.context.is_clean()) {
+            let diagnostic = Diagnostic::new(
+                Code::ACTUATED,
+                "no joint of the robot is actuated",
+                joint.span.clone(),
+            );
+            table
+                .context
+                .report(diagnostic.help("mark a joint with actuated = true"));
+        }
+        return;
+    };
+    let dof = platform.motion.value.coordinates().len();
+    // Of missing actuators the mechanism tells, which knows what motions the legs leave.
+    if count >= dof {
+        check_redundancy(table, platform, legs);
+    }
+}
+
+/// The robot has as many actuators beyond its coordinates as it is said to have.
+fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
+    let robot = Inventory {
+        platform: Some(platform),
+        legs,
+        scope: &Scope::default(),
+        payloads: &[],
+    };
+    let names = robot.actuator_names();
+    let names: Vec<&str> = names.usual().collect();
+    let dof = platform.motion.value.coordinates().len();
+    let Some(wanted) = &platform.redundancy else {
+        return;
+    };
+    if legs.is_empty() || !table.context.is_clean() || names.len() == dof + wanted.value {
+        return;
+    }
+    let coordinates = if dof == 1 {
+        "coordinate"
+    } else {
+        "coordinates"
+    };
+    let message = format!(
+        "a redundancy of {} means {} actuators for {dof} {coordinates}, but the robot has {}",
+        wanted.value,
+        dof + wanted.value,
+        names.len()
+    );
+    let help = if names.len() > dof + wanted.value {
+        format!(
+            "take `actuated = true` from a joint, or write redundancy = {}",
+            names.len() - dof
+        )
+    } else {
+        "mark more joints with actuated = true, or name the redundancy that the robot has"
+            .to_owned()
+    };
+    table.context.report(
+        Diagnostic::new(Code::WRONG_COUNT, message, wanted.span.clone())
+            .label(format!("the actuators are {}", names.join(", ")))
+            .help(help),
+    );
+}
+
+/// Leg and joint names are joined by underscores, so two bodies can come by the same name.
+fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
+    let mut names: Vec<&str> = Vec::new();
+    for leg in robot.legs {
+        for joint in &leg.joints {
+            let repeated = robot
+                .legs
+                .iter()
+                .filter(|other| other.name.value == leg.name.value)
+                .count()
+                > 1;
+            let name = format!("{}_{}", joint.name.value, leg.name.value);
+            let clash = robot.legs.iter().any(|other| {
+                let same = |j: &crate::robot::model::Joint| {
+                    format!("{}_{}", j.name.value, other.name.value) == name
+                };
+                other.name.value != leg.name.value && other.joints.iter().any(same)
+            });
+            if clash && !repeated && !names.contains(&leg.name.value.as_str()) {
+                let message = format!("another leg's joint is also called `{name}`");
+                let diagnostic = Diagnostic::new(Code::SAME_NAME, message, leg.name.span.clone());
+                table
+                    .context
+                    .report(diagnostic.help("choose names without underscores"));
+                names.push(&leg.name.value);
+            }
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! A walk over a TOML document that notes every error and goes on.
+//!
+//! A reader asks a [`Table`] for its keys and an [`Item`] for a type; what is missing, of the wrong
+//! type or left over is reported with its place, and `None` is the answer.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
+use crate::robot::model::Spanned;
+use std::cell::RefCell;
+use toml::de::{DeTable, DeValue};
+
+/// The source text and the errors found so far.
+pub(crate) struct Context<'t> {
+    source: &'t Source,
+    errors: RefCell<Diagnostics>,
+    /// What may not be meant, though it can be read.
+    doubts: RefCell<Vec<Spanned<String>>>,
+}
+
+impl<'t> Context<'t> {
+    pub(crate) fn new(source: &'t Source) -> Self {
+        Self {
+            source,
+            errors: RefCell::default(),
+            doubts: RefCell::default(),
+        }
+    }
+
+    pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        self.errors.borrow_mut().push(diagnostic);
+    }
+
+    /// Reports an error unless its place has one: a leg's expression is evaluated once for every
+    /// placement, and one message is enough.
+    pub(crate) fn report_once(&self, diagnostic: Diagnostic) {
+        let known = diagnostic
+            .span
+            .as_ref()
+            .is_some_and(|s| self.errors.borrow().has_error_at(s));
+        if !known {
+            self.report(diagnostic);
+        }
+    }
+
+    /// Notes what may not be meant, once for a place.
+    pub(crate) fn doubt(&self, what: String, span: &Span) {
+        let mut doubts = self.doubts.borrow_mut();
+        if !doubts.iter().any(|known| known.span == *span) {
+            doubts.push(Spanned::new(what, span.clone()));
+        }
+    }
+
+    /// What may not be meant, in the order of the text.
+    pub(crate) fn doubts(&self) -> Vec<Spanned<String>> {
+        let mut doubts = self.doubts.borrow().clone();
+        doubts.sort_by_key(|doubt| doubt.span.start);
+        doubts
+    }
+
+    /// Whether no error is known.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.errors.borrow().is_empty()
+    }
+
+    pub(crate) fn text(&self, span: &Span) -> &'t str {
+        self.source.text.get(span.clone()).unwrap_or("")
+    }
+
+    pub(crate) fn into_errors(self) -> Diagnostics {
+        self.errors.into_inner()
+    }
+}
+
+/// A table whose keys are being read.
+pub(crate) struct Table<'c, 't> {
+    pub(crate) context: &'c Context<'t>,
+    entries: &'c DeTable<'t>,
+    /// Where its errors are shown if no key is their place.
+    pub(crate) span: Span,
+    /// What it is called, for instance "the table `[platform]`".
+    what: String,
+    known: RefCell<Vec<String>>,
+}
+
+/// A value that is being read.
+#[derive(Clone)]
+pub(crate) struct Item<'c, 't> {
+    pub(crate) context: &'c Context<'t>,
+    pub(crate) value: &'c DeValue<'t>,
+    pub(crate) span: Span,
+    /// Place and name of the key that holds it.
+    pub(crate) key: Spanned<String>,
+}
+
+impl<'c, 't> Table<'c, 't> {
+    pub(crate) fn new(
+        context: &'c Context<'t>,
+        entries: &'c DeTable<'t>,
+        span: Span,
+        what: impl Into<String>,
+    ) -> Self {
+        Self {
+            context,
+            entries,
+            span,
+            what: what.into(),
+            known: RefCell::default(),
+        }
+    }
+
+    /// The value of an optional key.
+    pub(crate) fn get(&self, key: &str) -> Option<Item<'c, 't>> {
+        if !self.known.borrow().iter().any(|known| known == key) {
+            self.known.borrow_mut().push(key.to_owned());
+        }
+        let (name, value) = self.entries.get_key_value(key)?;
+        let key = Spanned::new(key.to_owned(), name.span());
+        Some(Item {
+            context: self.context,
+            value: value.get_ref(),
+            span: value.span(),
+            key,
+        })
+    }
+
+    /// The value of a key that must be there.
+    pub(crate) fn require(&self, key: &str, help: &str) -> Option<Item<'c, 't>> {
+        let item = self.get(key);
+        if item.is_none() {
+            let message = format!("{} has no `{key}`", self.what);
+            self.context
+                .report(Diagnostic::new(Code::MISSING_KEY, message, self.span.clone()).help(help));
+        }
+        item
+    }
+
+    /// All keys with their values, in the order of the text; none is unknown then.
+    pub(crate) fn items(&self) -> Vec<Item<'c, 't>> {
+        let item = |(key, value): (&'c toml::Spanned<_>, &'c toml::Spanned<DeValue<'t>>)| {
+            let name: &std::borrow::Cow<'_, str> = key.get_ref();
+            Item {
+                context: self.context,
+                value: value.get_ref(),
+                span: value.span(),
+                key: Spanned::new(name.to_string(), key.span()),
+            }
+        };
+        let mut items: Vec<_> = self.entries.iter().map(item).collect();
+        items.sort_by_key(|item| item.key.span.start);
+        self.known
+            .borrow_mut()
+            .extend(items.iter().map(|item| item.key.value.clone()));
+        items
+    }
+
+    /// Keys that nobody asked for, in the order of the text.
+    pub(crate) fn unread(&self) -> Vec<Item<'c, 't>> {
+        let known = self.known.borrow().clone();
+        let mut items = self.items();
+        items.retain(|item| !known.contains(&item.key.value));
+        *self.known.borrow_mut() = known;
+        items
+    }
+
+    /// Reports every key that nobody asked for.
+    pub(crate) fn finish(&self) {
+        for item in self.unread() {
+            let known = self.known.borrow();
+            let name = &item.key.value;
+            let help = did_you_mean(name, known.iter().map(String::as_str));
+            let help = help.unwrap_or_else(|| format!("known keys: {}", known.join(", ")));
+            let diagnostic = Diagnostic::new(
+                Code::UNKNOWN_KEY,
+                format!("unknown key `{name}`"),
+                item.key.span.clone(),
+            );
+            self.context.report(
+                diagnostic
+                    .label(format!("not a key of {}", self.what))
+                    .help(help),
+            );
+        }
+    }
+}
+
+/// "a string" and so on.
+fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "an integer",
+        DeValue::Float(_) => "a float",
+        DeValue::Boolean(_) => "a boolean",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+impl<'c, 't> Item<'c, 't> {
+    pub(crate) fn error(&self, code: Code, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(code, message, self.span.clone())
+    }
+
+    /// Reports that another type is expected.
+    pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
+        let found = type_name(self.value);
+        let message = format!("`{}`: expected {expected}, found {found}", self.key.value);
+        self.context.report_once(
+            self.error(Code::WRONG_TYPE, message)
+                .label(format!("this is {found}")),
+        );
+        None
+    }
+
+    pub(crate) fn string(&self) -> Option<Spanned<String>> {
+        match self.value {
+            DeValue::String(text) => Some(Spanned::new(text.to_string(), self.span.clone())),
+            _ => self.mismatch("a string"),
+        }
+    }
+
+    pub(crate) fn boolean(&self) -> Option<bool> {
+        self.value
+            .as_bool()
+            .or_else(|| self.mismatch("true or false"))
+    }
+
+    /// An integer of at least `minimum`.
+    pub(crate) fn integer(&self, minimum: u64) -> Option<u64> {
+        let DeValue::Integer(text) = self.value else {
+            return self.mismatch("an integer");
+        };
+        let value = u64::from_str_radix(text.as_str().trim_start_matches('+'), text.radix()).ok();
+        let value = value.filter(|v| *v >= minimum && i64::try_from(*v).is_ok());
+        if value.is_none() {
+            let found = self.context.text(&self.span);
+            let message = format!(
+                "`{}`: expected an integer of at least {minimum}, found {found}",
+                self.key.value
+            );
+            self.context.report(self.error(Code::OUT_OF_RANGE, message));
+        }
+        value
+    }
+
+    /// [`Self::integer`] as a size.
+    pub(crate) fn size(&self, minimum: u64) -> Option<usize> {
+        let value = usize::try_from(self.integer(minimum)?);
+        value.ok()
+    }
+
+    /// One of a few words.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<Spanned<T>> {
+        let text = self.string()?;
+        let found = choices.iter().find(|(name, _)| *name == text.value);
+        if found.is_none() {
+            let names = || choices.iter().map(|(name, _)| *name);
+            let quoted: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
+            let expected = match quoted.as_slice() {
+                [first, second] => format!("{first} or {second}"),
+                _ => format!("one of {}", quoted.join(", ")),
+            };
+            let (key, found) = (&self.key.value, &text.value);
+            let message = format!("`{key}`: expected {expected}, found \"{found}\"");
+            let help = did_you_mean(&text.value, names());
+            self.context
+                .report(self.error(Code::UNKNOWN_WORD, message).maybe_help(help));
+        }
+        found.map(|(_, value)| Spanned::new(*value, text.span))
+    }
+
+    /// The elements of a list.
+    pub(crate) fn list(&self) -> Option<Vec<Self>> {
+        let DeValue::Array(array) = self.value else {
+            return self.mismatch("a list");
+        };
+        let element = |value: &'c toml::Spanned<DeValue<'t>>| Item {
+            context: self.context,
+            value: value.get_ref(),
+            span: value.span(),
+            key: self.key.clone(),
+        };
+        Some(array.iter().map(element).collect())
+    }
+
+    /// The elements of a list of three.
+    pub(crate) fn triple(&self) -> Option<[Self; 3]> {
+        let list = self.list()?;
+        let found = list.len();
+        let triple = <[Self; 3]>::try_from(list).ok();
+        if triple.is_none() {
+            let message = format!(
+                "`{}`: expected a list of 3 values, found {found}",
+                self.key.value
+            );
+            self.context
+                .report_once(self.error(Code::WRONG_COUNT, message));
+        }
+        triple
+    }
+
+    pub(crate) fn strings(&self) -> Option<Vec<Spanned<String>>> {
+        // Every element is looked at, so that every wrong one is reported.
+        let strings: Vec<_> = self.list()?.iter().map(Self::string).collect();
+        strings.into_iter().collect()
+    }
+
+    pub(crate) fn is_table(&self) -> bool {
+        self.value.is_table()
+    }
+
+    /// The value as a table; `what` is its name for messages.
+    pub(crate) fn table(&self, what: impl Into<String>) -> Option<Table<'c, 't>> {
+        let DeValue::Table(entries) = self.value else {
+            return self.mismatch("a table");
+        };
+        Some(Table::new(self.context, entries, self.span.clone(), what))
+    }
+
+    /// The elements of an array of tables.
+    pub(crate) fn tables(&self, what: &str) -> Vec<Table<'c, 't>> {
+        let Some(list) = self.list() else {
+            return Vec::new();
+        };
+        list.iter().filter_map(|item| item.table(what)).collect()
+    }
+}
