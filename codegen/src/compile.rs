@@ -108,9 +108,10 @@ fn compiled(
     from: MotionInput,
 ) -> Result<CompiledFunction, Underivable> {
     let program = Forms::new(*assembler, function, from).cheapest()?;
-    let lanes = match request.side_by_side && request.float == Float::F64 {
-        true => selection::beside(assembler, function, from, &program),
-        false => None,
+    let lanes = if request.side_by_side && request.float == Float::F64 {
+        selection::beside(assembler, function, from, &program)
+    } else {
+        None
     };
     let mechanism = assembler.mechanism;
     Ok(CompiledFunction::new(

@@ -109,9 +109,10 @@ impl RobotModel {
     #[must_use]
     pub fn cost(&self, function: &CompiledFunction) -> WholeCost {
         let newton = self.needs_joints(function) && function.computes == Function::Joints;
-        let mut whole = WholeCost::from(match newton {
-            true => Cost::default(),
-            false => function.program.cost(),
+        let mut whole = WholeCost::from(if newton {
+            Cost::default()
+        } else {
+            function.program.cost()
         });
         whole.side_by_side = function.lanes.as_ref().map(|lanes| {
             let (once, each) = lanes.operations();
@@ -153,14 +154,15 @@ impl RobotModel {
 
     /// `guard::unit_quaternion` where the length is 1 but for rounding.
     fn scaled_quaternion(&self) -> Cost {
-        match self.has_quaternion() {
-            true => Cost {
+        if self.has_quaternion() {
+            Cost {
                 additions: 5,
                 multiplications: 9,
                 guards: 1,
                 ..Cost::default()
-            },
-            false => Cost::default(),
+            }
+        } else {
+            Cost::default()
         }
     }
 
@@ -268,18 +270,19 @@ fn gauss_newton_step(n: usize, r: usize) -> Cost {
 
 /// `forward::displace` or `displace_quaternion`.
 fn displacement(r: usize, quaternion: bool) -> Cost {
-    match quaternion {
-        false => Cost {
-            additions: r,
-            ..Cost::default()
-        },
+    if quaternion {
         // The position, the turn's square, two series, the product, and the length that is 1 but for rounding.
-        true => Cost {
+        Cost {
             additions: (r - 3) + 2 + 6 + 12 + 5,
             multiplications: 3 + 6 + 3 + 16 + 9,
             guards: 2,
             ..Cost::default()
-        },
+        }
+    } else {
+        Cost {
+            additions: r,
+            ..Cost::default()
+        }
     }
 }
 

@@ -195,9 +195,10 @@ impl Arena {
     pub(crate) fn name_of_value(&self, fingerprint: &Fingerprint) -> Option<String> {
         let handle = self.same(fingerprint)?;
         let name = self.name_of(handle.index())?;
-        Some(match handle.is_negative() {
-            true => negative_name(&name),
-            false => name,
+        Some(if handle.is_negative() {
+            negative_name(&name)
+        } else {
+            name
         })
     }
 

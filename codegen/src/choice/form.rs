@@ -66,9 +66,10 @@ impl Forms<'_> {
     /// There is none.
     pub(super) fn all(&self) -> Result<Vec<Form>, Missing> {
         let all = self.filtered(|_| true);
-        match all.is_empty() {
-            true => Err(Missing::of(format!("has no function {}", self.described()))),
-            false => Ok(all),
+        if all.is_empty() {
+            Err(Missing::of(format!("has no function {}", self.described())))
+        } else {
+            Ok(all)
         }
     }
 
@@ -113,9 +114,10 @@ impl Forms<'_> {
             _ => function,
         };
         let has = |from| group.has(self.mechanism, function, from);
-        match self.from.is_empty() {
-            true => has(from),
-            false => MotionInput::ALL.into_iter().any(has),
+        if self.from.is_empty() {
+            has(from)
+        } else {
+            MotionInput::ALL.into_iter().any(has)
         }
     }
 
@@ -150,14 +152,16 @@ impl Forms<'_> {
                 help: format!("leave out `from`, or ask for `{plain}`"),
             });
         }
-        let mut wanted = match is_plain && !self.tree && !self.from.is_empty() {
-            true => self.from.iter().map(|&from| (function, from)).collect(),
-            false => vec![(function, from)],
+        let mut wanted = if is_plain && !self.tree && !self.from.is_empty() {
+            self.from.iter().map(|&from| (function, from)).collect()
+        } else {
+            vec![(function, from)]
         };
         wanted.retain(|form| self.inventory.contains(form));
-        match wanted.is_empty() {
-            true => Err(self.absent(name, function)),
-            false => Ok(wanted),
+        if wanted.is_empty() {
+            Err(self.absent(name, function))
+        } else {
+            Ok(wanted)
         }
     }
 
@@ -165,15 +169,14 @@ impl Forms<'_> {
     fn absent(&self, name: &str, function: Function) -> Missing {
         let others = self.inventory.iter().filter(|form| form.0 == function);
         let others: Vec<&str> = others.map(|form| form.1.name()).collect();
-        match others.is_empty() {
-            true => {
-                let reason = reason(Meant::Forms(function), self.tree);
-                Missing::of(format!("has no function `{name}`{reason}"))
-            }
-            false => Missing {
+        if others.is_empty() {
+            let reason = reason(Meant::Forms(function), self.tree);
+            Missing::of(format!("has no function `{name}`{reason}"))
+        } else {
+            Missing {
                 sentence: format!("has no function `{name}` {}", self.sources()),
                 help: format!("it is evaluated from {}", others.join(", ")),
-            },
+            }
         }
     }
 

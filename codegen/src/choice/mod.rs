@@ -58,12 +58,13 @@ impl Choice {
                 help: help(""),
             });
         }
-        match unknown.is_empty() {
-            true => Ok(Self {
+        if unknown.is_empty() {
+            Ok(Self {
                 names,
                 ..Self::default()
-            }),
-            false => Err(unknown),
+            })
+        } else {
+            Err(unknown)
         }
     }
 

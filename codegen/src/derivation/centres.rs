@@ -56,9 +56,10 @@ fn from_axis(leg: &Leg, rates: &Rates, first: usize) -> Option<Centre> {
             None => continue,
             Some(centre) => centre.offset,
         };
-        let origin = match antecedent == first {
-            true => Some(-offset),
-            false => along[antecedent],
+        let origin = if antecedent == first {
+            Some(-offset)
+        } else {
+            along[antecedent]
         };
         let passes = origin.is_some_and(|origin| (origin + joint.b).is_zero());
         if meets && passes {

@@ -83,9 +83,10 @@ impl<'a> Robot<'a> {
             let motor = values
                 .iter()
                 .filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
-            let body = match carried == Some(j) {
-                true => Inertia::zero(arena),
-                false => Inertia::of(arena, values, &own),
+            let body = if carried == Some(j) {
+                Inertia::zero(arena)
+            } else {
+                Inertia::of(arena, values, &own)
             };
             let next = (j + 1..leg.joints.len()).filter(|&c| leg.joints[c].antecedent == Some(j));
             links.push(Link {
@@ -240,9 +241,10 @@ impl<'a> Chain<'_, 'a> {
         let entry = |i: usize| {
             let of_joint = |sum: Expr<'a>, j: usize| {
                 let slides = self.leg.joints[j].kind == JointKind::Prismatic;
-                let along = match slides {
-                    true => on[j].force * rates.joint[j].coefficient(i),
-                    false => zero,
+                let along = if slides {
+                    on[j].force * rates.joint[j].coefficient(i)
+                } else {
+                    zero
                 };
                 let both = rates.joint[j].coefficient(i) * rates.joint[j].coefficient(k);
                 sum + on[j].moment * rates.turning[j].coefficient(i)

@@ -55,16 +55,15 @@ impl<'a> Solved<'a> {
             .iter()
             .map(|&row| columns.iter().map(|&column| left[row][column]).collect())
             .collect();
-        let (inverse, determinants) = match rest.is_empty() {
-            true => (Vec::new(), Vec::new()),
-            false => {
-                let Inverse {
-                    scaled,
-                    determinants,
-                    ..
-                } = inverse(&rest, home)?;
-                (scaled, determinants)
-            }
+        let (inverse, determinants) = if rest.is_empty() {
+            (Vec::new(), Vec::new())
+        } else {
+            let Inverse {
+                scaled,
+                determinants,
+                ..
+            } = inverse(&rest, home)?;
+            (scaled, determinants)
         };
         Some(Self {
             steps,

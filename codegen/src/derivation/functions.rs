@@ -100,9 +100,10 @@ pub(super) fn on_sheet<'a, 's>(
     // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
     let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
     let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
-    let still = match brings_back || closes {
-        true => &[][..],
-        false => &mechanism.still,
+    let still = if brings_back || closes {
+        &[][..]
+    } else {
+        &mechanism.still
     };
     let mut sheet = Sheet::new(arena, mechanism, selection, from, still)?;
     let rows = rows(&mut sheet)?;

@@ -67,9 +67,10 @@ pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionI
 #[must_use]
 pub fn function_name(function: Function, from: MotionInput, tree: bool) -> String {
     let name = function.name();
-    let base = match function.is_of_base_parameters() {
-        true => "_base",
-        false => "",
+    let base = if function.is_of_base_parameters() {
+        "_base"
+    } else {
+        ""
     };
     let from = match from {
         MotionInput::Joints if !tree => "_from_joints",

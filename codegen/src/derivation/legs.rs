@@ -45,9 +45,10 @@ impl<'a> Robot<'a> {
         let frames = self.frames_of(index, seen, formulation)?;
         let rates = Rates::new(leg, platform.is_some());
         let (ground, lift) = self.levels(leg, &frames, seen, formulation);
-        let centres = match formulation.meeting {
-            true => centres(leg, &rates),
-            false => Vec::new(),
+        let centres = if formulation.meeting {
+            centres(leg, &rates)
+        } else {
+            Vec::new()
         };
         let closure = match &platform {
             Some(platform) => Some(self.close(index, &frames, &rates, platform)?),
@@ -165,9 +166,10 @@ impl<'a> Robot<'a> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         let home = |e: Expr<'a>| self.at_home(e);
-        let [selected, over] = match mechanism.is_parasitic() {
-            true => split_rows(arena, leg, frames, rates, &home),
-            false => [mechanism.closure_rows(index), Vec::new()],
+        let [selected, over] = if mechanism.is_parasitic() {
+            split_rows(arena, leg, frames, rates, &home)
+        } else {
+            [mechanism.closure_rows(index), Vec::new()]
         };
         let rows = [&selected[..], &over[..]];
         let closure = LegClosure::new(arena, leg, frames, rates, platform, rows, &home);

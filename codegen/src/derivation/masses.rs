@@ -51,9 +51,10 @@ impl<'a> Robot<'a> {
                 Some(closure) => {
                     let tensor = closure.mass_at_end(&masses);
                     let entry = on_twist(&self.free, tensor, closure.arm);
-                    match self.aside.is_some() {
-                        true => add(&mut free, &entry),
-                        false => add(&mut sum, &entry),
+                    if self.aside.is_some() {
+                        add(&mut free, &entry)
+                    } else {
+                        add(&mut sum, &entry)
                     }
                 }
                 None => {
@@ -68,9 +69,10 @@ impl<'a> Robot<'a> {
         }
         self.arena.enter("platform");
         if let Some(entry) = self.platform_masses(values) {
-            match self.aside.is_some() {
-                true => add(&mut free, &entry),
-                false => add(&mut sum, &entry),
+            if self.aside.is_some() {
+                add(&mut free, &entry)
+            } else {
+                add(&mut sum, &entry)
             }
         }
         if let Some(aside) = &self.aside {

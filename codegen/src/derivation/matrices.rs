@@ -17,9 +17,10 @@ impl<'a> Sheet<'a, '_> {
         let scale = |k: usize| {
             let leg = joints[actuated[k]].leg;
             let closure = self.robot.legs[leg].closure.as_ref();
-            match mechanism.is_parasitic() {
-                true => self.determinant(leg).unwrap_or_else(|| arena.one()),
-                false => closure.map_or_else(|| arena.one(), |c| c.determinant),
+            if mechanism.is_parasitic() {
+                self.determinant(leg).unwrap_or_else(|| arena.one())
+            } else {
+                closure.map_or_else(|| arena.one(), |c| c.determinant)
             }
         };
         let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();

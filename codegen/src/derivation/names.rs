@@ -74,9 +74,10 @@ impl Accelerations {
     }
 
     pub(super) fn name(self, what: &str) -> String {
-        match self.are_bias {
-            true => format!("bias_{what}"),
-            false => what.to_owned(),
+        if self.are_bias {
+            format!("bias_{what}")
+        } else {
+            what.to_owned()
         }
     }
 

@@ -144,9 +144,12 @@ impl<'a> Robot<'a> {
 
 /// The common factor of a leg's wrenches, and the wrenches without and with it.
 fn name_wrenches<'a>(names: &mut Names<'a>, leg: &Leg, closure: &LegClosure<'a>) {
-    let positive = |value: Expr<'a>| match value.handle().is_negative() {
-        true => -value,
-        false => value,
+    let positive = |value: Expr<'a>| {
+        if value.handle().is_negative() {
+            -value
+        } else {
+            value
+        }
     };
     let factors = || {
         closure

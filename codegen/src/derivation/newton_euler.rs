@@ -73,9 +73,10 @@ impl<'a> Robot<'a> {
                 let what = format!("force_on_{}_platform", coordinate_label(coordinate));
                 let _ = force.named(&what);
             }
-            match self.aside.is_some() {
-                true => add(&mut free, on_twist),
-                false => add(&mut total, on_twist),
+            if self.aside.is_some() {
+                add(&mut free, on_twist)
+            } else {
+                add(&mut total, on_twist)
             }
         }
         if let Some(aside) = &self.aside {
@@ -268,9 +269,10 @@ impl<'a> Chain<'_, 'a> {
         }
         let body = &mut bodies[last];
         let square = point.dot(point);
-        let mass = match square.is_zero() {
-            true => body.mass,
-            false => body.first.dot(point) * (Number::ONE / square.as_number()?),
+        let mass = if square.is_zero() {
+            body.mass
+        } else {
+            body.first.dot(point) * (Number::ONE / square.as_number()?)
         };
         if mass.is_zero() {
             return None;

@@ -84,9 +84,10 @@ impl<'a> Metric<'a> {
     fn new(arena: &'a Arena, size: usize, as_matrix: bool) -> Self {
         let entry = |i: usize, j: usize| arena.integer(i64::from(i == j));
         let row = |i: usize| (0..size).map(|j| entry(i, j)).collect();
-        match as_matrix {
-            true => Self::Matrix((0..size).map(row).collect()),
-            false => Self::Units(Vec::new()),
+        if as_matrix {
+            Self::Matrix((0..size).map(row).collect())
+        } else {
+            Self::Units(Vec::new())
         }
     }
 

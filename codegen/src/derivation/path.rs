@@ -87,13 +87,13 @@ impl<'a> Path<'a> {
             columns: Vec::new(),
         };
         path.columns = (0..mechanism.dof()).map(|i| path.column(i)).collect();
-        path.origin = path
-            .steps
-            .iter()
-            .fold(path.origin, |sum, step| match step.is_forward {
-                true => sum + step.link,
-                false => sum - step.link,
-            });
+        path.origin = path.steps.iter().fold(path.origin, |sum, step| {
+            if step.is_forward {
+                sum + step.link
+            } else {
+                sum - step.link
+            }
+        });
         Some(path)
     }
 
@@ -121,16 +121,18 @@ impl<'a> Path<'a> {
 
     /// From the origin of the joint at a step to the origin of the last body.
     fn lever(&self, at: usize) -> Vector3<'a> {
-        let own = match self.steps[at].is_forward {
-            true => Vector3::zero(self.arena),
-            false => -self.steps[at].link,
+        let own = if self.steps[at].is_forward {
+            Vector3::zero(self.arena)
+        } else {
+            -self.steps[at].link
         };
-        self.steps[at + 1..]
-            .iter()
-            .fold(own, |sum, step| match step.is_forward {
-                true => sum + step.link,
-                false => sum - step.link,
-            })
+        self.steps[at + 1..].iter().fold(own, |sum, step| {
+            if step.is_forward {
+                sum + step.link
+            } else {
+                sum - step.link
+            }
+        })
     }
 
     /// Whether the last body turns about more than one axis.
@@ -154,9 +156,10 @@ impl<'a> Path<'a> {
                 step.axis.scaled(own)
             };
             let (rate, rate_dot) = (of(rates), of(accelerations));
-            at = match step.is_forward {
-                true => at.moved(step.link).joined(step.kind, rate, rate_dot),
-                false => at.left(step.kind, rate, rate_dot).moved(-step.link),
+            at = if step.is_forward {
+                at.moved(step.link).joined(step.kind, rate, rate_dot)
+            } else {
+                at.left(step.kind, rate, rate_dot).moved(-step.link)
             };
         }
         at

@@ -104,9 +104,12 @@ impl<'a> PlatformPose<'a> {
     pub fn new(arena: &'a Arena, motion: Motion, still: &[usize]) -> Self {
         let zero = arena.zero();
         let count = motion.pose_coordinates().len();
-        let input = |i: usize| match still.contains(&i) {
-            true => zero,
-            false => arena.input("pose", i),
+        let input = |i: usize| {
+            if still.contains(&i) {
+                zero
+            } else {
+                arena.input("pose", i)
+            }
         };
         let mut origin = [zero; 3];
         for (i, coordinate) in motion.twist().iter().enumerate() {

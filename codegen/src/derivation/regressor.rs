@@ -135,9 +135,10 @@ impl<'a> Robot<'a> {
         let partials = self.aside.as_ref().map(|aside| aside.partials(self.arena));
         let velocities = closure.end_velocities(self.arena, partials.as_deref());
         let forces: Vec<Expr<'a>> = velocities.iter().map(|v| acceleration.dot(*v)).collect();
-        match projection.on_platform {
-            true => forces,
-            false => self.combine(&projection.platform, &forces),
+        if projection.on_platform {
+            forces
+        } else {
+            self.combine(&projection.platform, &forces)
         }
     }
 
@@ -150,9 +151,10 @@ impl<'a> Robot<'a> {
     ) -> Vec<Expr<'a>> {
         if let Some(aside) = self.aside.as_ref().filter(|_| self.own_axes) {
             let forces = body.on_partials(self.arena, symbol, &aside.partials(self.arena));
-            return match projection.on_platform {
-                true => forces,
-                false => self.combine(&projection.platform, &forces),
+            return if projection.on_platform {
+                forces
+            } else {
+                self.combine(&projection.platform, &forces)
             };
         }
         let forces = body.project(&self.free, body.unit_wrench(self.arena, symbol));

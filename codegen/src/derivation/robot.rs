@@ -249,9 +249,10 @@ impl<'a> Robot<'a> {
         twist: &[Expr<'a>],
         end: &PlatformMotion<'a>,
     ) -> Vec<Expr<'a>> {
-        match self.by_rows {
-            false => closure.velocities(end),
-            true => apply(&state.rows[..closure.wrenches.len()].to_vec(), twist),
+        if self.by_rows {
+            apply(&state.rows[..closure.wrenches.len()].to_vec(), twist)
+        } else {
+            closure.velocities(end)
         }
     }
 

@@ -114,9 +114,12 @@ pub(crate) fn derive_of_rows<'a>(
 ) -> Option<Derived<'a>> {
     let width = dof + 1;
     let before = |at: usize| is_there[..at].iter().filter(|there| **there).count();
-    let number = |leg: usize, at: usize| match is_there[at] {
-        true => arena.input(ROWS, before(at) * legs + leg),
-        false => arena.zero(),
+    let number = |leg: usize, at: usize| {
+        if is_there[at] {
+            arena.input(ROWS, before(at) * legs + leg)
+        } else {
+            arena.zero()
+        }
     };
     let row = |leg: usize, row: usize| -> Vec<Expr<'a>> {
         let numbers = row * width..(row + 1) * width;
@@ -230,9 +233,10 @@ impl<'a> Sheet<'a, '_> {
     fn own_step(&mut self) -> Vec<Expr<'a>> {
         let differences = self.differences();
         let rows = self.own_jacobian();
-        let moved = match rows.is_empty() {
-            true => self.zeros(),
-            false => apply(&transposed(&rows), &differences[..rows.len()]),
+        let moved = if rows.is_empty() {
+            self.zeros()
+        } else {
+            apply(&transposed(&rows), &differences[..rows.len()])
         };
         [upper(&self.own_normal()), moved].concat()
     }
@@ -276,9 +280,10 @@ impl<'a> Sheet<'a, '_> {
             let row = |(row, own): (&Vec<Expr<'a>>, &Expr<'a>)| [&row[..], &[*own]].concat();
             parts.rows = rows.iter().zip(&direct).flat_map(row).collect();
         }
-        match parts.by_cofactors {
-            true => forces,
-            false => [upper(&self.own_normal()), forces].concat(),
+        if parts.by_cofactors {
+            forces
+        } else {
+            [upper(&self.own_normal()), forces].concat()
         }
     }
 }

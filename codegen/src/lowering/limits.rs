@@ -94,9 +94,10 @@ impl SearchLimits {
     /// Up to so many nodes of a function with so many are searched for pairs at once.
     #[must_use]
     pub(crate) const fn piece(&self, nodes: usize) -> usize {
-        match nodes <= self.large_nodes {
-            true => self.piece_nodes,
-            false => self.small_piece_nodes,
+        if nodes <= self.large_nodes {
+            self.piece_nodes
+        } else {
+            self.small_piece_nodes
         }
     }
 

@@ -116,9 +116,10 @@ impl<'p> Order<'p> {
         let uses = cone.uses.iter();
         uses.map(|&(step, uses)| {
             let is_over = self.left[step] == uses;
-            match self.is_done[step] {
-                true => -isize::from(is_over),
-                false => isize::from(!is_over),
+            if self.is_done[step] {
+                -isize::from(is_over)
+            } else {
+                isize::from(!is_over)
             }
         })
         .sum()

@@ -85,9 +85,10 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
 /// be symmetric about.
 fn base_columns(description: &Description) -> BaseColumns {
     let has_loop = |leg: &crate::description::Leg| leg.end.is_some();
-    let by_kind = match description.legs.iter().any(has_loop) {
-        true => BaseColumns::Symmetric,
-        false => BaseColumns::Cheapest,
+    let by_kind = if description.legs.iter().any(has_loop) {
+        BaseColumns::Symmetric
+    } else {
+        BaseColumns::Cheapest
     };
     description.base_columns.unwrap_or(by_kind)
 }
@@ -208,9 +209,10 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
     let Some(mobility) = loose(mechanism) else {
         return Ok(());
     };
-    match beside.into_iter().all(|at| loose(&at).is_some()) {
-        true => Err(Diagnostics::from(explain::not_held(description, &mobility))),
-        false => Ok(()),
+    if beside.into_iter().all(|at| loose(&at).is_some()) {
+        Err(Diagnostics::from(explain::not_held(description, &mobility)))
+    } else {
+        Ok(())
     }
 }
 

@@ -131,9 +131,10 @@ fn displaced_aside(
         let legs = mechanism.legs.iter().enumerate();
         let mut is_regular = legs.map(|(index, leg)| {
             let range = mechanism.leg_range(index);
-            let limit = match is_lenient {
-                true => lenient_limit(leg, &mechanism.home.joints[range.clone()]),
-                false => REGULAR,
+            let limit = if is_lenient {
+                lenient_limit(leg, &mechanism.home.joints[range.clone()])
+            } else {
+                REGULAR
             };
             condition(&leg.closure_jacobian(&at.joints[range])) < limit
         });
@@ -192,9 +193,12 @@ fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f
     const STEPS: usize = 8;
     let home = &mechanism.home;
     let legs = mechanism.legs.iter().enumerate();
-    let limits = legs.map(|(index, leg)| match is_lenient {
-        true => lenient_limit(leg, &home.joints[mechanism.leg_range(index)]),
-        false => REGULAR,
+    let limits = legs.map(|(index, leg)| {
+        if is_lenient {
+            lenient_limit(leg, &home.joints[mechanism.leg_range(index)])
+        } else {
+            REGULAR
+        }
     });
     let limits: Vec<f64> = limits.collect();
     let mut joints = home.joints.clone();

@@ -114,9 +114,10 @@ impl Search {
             return Ok(program);
         };
         let other = lower(arena, &function, &again, &states)?;
-        Ok(match is_cheaper(&other, &program) {
-            true => other,
-            false => program,
+        Ok(if is_cheaper(&other, &program) {
+            other
+        } else {
+            program
         })
     }
 

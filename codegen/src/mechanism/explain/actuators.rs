@@ -100,9 +100,10 @@ pub(in crate::mechanism) fn independent(
     };
     let message = "the independent coordinates do not determine the platform's motion at home";
     Diagnostic::new(Code::NOT_HELD, message, span)
-        .label(match found.condition.is_finite() {
-            true => format!("their condition number is {:.1e}", found.condition),
-            false => "the others do not follow from them".to_owned(),
+        .label(if found.condition.is_finite() {
+            format!("their condition number is {:.1e}", found.condition)
+        } else {
+            "the others do not follow from them".to_owned()
         })
         .help(format!(
             "write {}, whose condition number is {:.1}",

@@ -94,10 +94,9 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     }
     let leg = &mechanism.legs[0].name;
     let sign = |root: usize| {
-        let values = modes.iter().map(|mode| match mode[root] == first[root] {
-            true => 1.0,
-            false => -1.0,
-        });
+        let values = modes
+            .iter()
+            .map(|mode| if mode[root] == first[root] { 1.0 } else { -1.0 });
         let values: Vec<f64> = values.collect();
         let index = constants.len();
         values.contains(&-1.0).then(|| {
