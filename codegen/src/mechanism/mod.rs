@@ -151,7 +151,7 @@ pub struct Mechanism {
     pub still: Vec<usize>,
 }
 
-/// An independent joint of the robot.
+/// A joint of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JointIndex {
     /// The leg.

@@ -96,7 +96,7 @@ impl Search {
         };
         let function = Expressions {
             inputs: inputs(derived),
-            output: output(function, derived.shape),
+            output: output(function, derived),
             entries: &derived.entries,
             guards: guards(&derived.guards),
             divisors: guards(&derived.divisors),
@@ -160,7 +160,8 @@ fn inputs(derived: &Derived<'_>) -> Vec<Array> {
     derived.inputs.iter().map(array).collect()
 }
 
-fn output(function: Function, (rows, columns): (usize, usize)) -> Array {
+fn output(function: Function, derived: &Derived<'_>) -> Array {
+    let (rows, columns) = derived.shape;
     Array {
         name: function.name().to_owned(),
         shape: if function.is_vector() {

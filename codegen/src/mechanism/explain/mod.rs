@@ -145,7 +145,11 @@ pub(super) fn home_error(
                 format!("{kind} `{}` is singular at the home configuration", leg.name.value),
                 leg.span.clone(),
             )
-            .label(if condition.is_finite() { format!("its Jacobian has the condition number {condition:.1e}") } else { "its Jacobian has no inverse".to_owned() })
+            .label(if condition.is_finite() {
+                format!("its Jacobian has the condition number {condition:.1e}")
+            } else {
+                "its Jacobian has no inverse".to_owned()
+            })
             .help(format!("choose a home pose where the {kind} is neither stretched nor folded, and joints whose motions are independent"))
         }
     }
