@@ -3,6 +3,7 @@
 
 use super::Angle;
 use super::arena::{Arena, Handle, Op, negative_name};
+use super::cosine_sine::CosineSine;
 use super::direction::Direction;
 use super::number::Number;
 use super::ratio::Ratio;
@@ -307,14 +308,16 @@ impl<'a> std::iter::Sum for Expr<'a> {
 impl Arena {
     /// Cosine and sine of an angle. The signs of the angle and multiples of a right angle are taken
     /// out, so that cos(x + 90 deg) is -sin(x).
-    pub fn cosine_and_sine(&self, direction: &Direction) -> (Expr<'_>, Expr<'_>) {
+    pub fn cosine_and_sine(&self, direction: &Direction) -> CosineSine<'_> {
         if direction.is_constant() {
             let (cosine, sine) = direction.offset().cosine_and_sine();
-            return (self.number(cosine), self.number(sine));
+            return CosineSine {
+                cosine: self.number(cosine),
+                sine: self.number(sine),
+            };
         }
         if direction.terms()[0].1.value() < 0.0 {
-            let (cosine, sine) = self.cosine_and_sine(&direction.negative());
-            return (cosine, -sine);
+            return self.cosine_and_sine(&direction.negative()).negated();
         }
         let (quarters, rest) = split_quarters(direction.offset());
         let reduced = direction.without_offset().plus(&Direction::constant(rest));
@@ -322,12 +325,13 @@ impl Arena {
         let id = self.direction(&reduced);
         let cosine = self.expr(self.intern(Op::Cosine(id)));
         let sine = self.expr(self.intern(Op::Sine(id)));
-        match quarters {
+        let (cosine, sine) = match quarters {
             0 => (cosine, sine),
             1 => (-sine, cosine),
             2 => (-cosine, -sine),
             _ => (sine, -cosine),
-        }
+        };
+        CosineSine { cosine, sine }
     }
 
     /// The direction of an angle symbol.

@@ -17,6 +17,7 @@
 pub mod angle;
 pub mod arena;
 pub mod calculus;
+pub mod cosine_sine;
 pub mod direction;
 mod divisors;
 pub mod expr;
@@ -33,6 +34,7 @@ pub mod vector;
 pub use angle::Angle;
 pub use arena::{Arena, InputElement};
 pub use calculus::Substitution;
+pub use cosine_sine::CosineSine;
 pub use direction::{Direction, SymbolId};
 pub use expr::Expr;
 pub use number::Number;

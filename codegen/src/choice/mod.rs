@@ -111,7 +111,7 @@ impl Choice {
         &self,
         mechanism: &Mechanism,
         joints: JointsBy,
-        inventory: &[(Function, MotionInput)],
+        inventory: &[FunctionForm],
     ) -> Result<Chosen, Vec<Missing>> {
         let forms = Forms {
             tree: mechanism.is_tree(),
@@ -168,7 +168,7 @@ mod tests {
         );
         assert!(matches!(
             meant("joints", false),
-            Some(Meant::Form(Function::Joints, _))
+            Some(Meant::Form(form)) if form.function == Function::Joints
         ));
     }
 

@@ -2,18 +2,26 @@
 
 use super::frames::{LegFrames, path_to_end};
 use super::rates::Rates;
+use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{JointKind, Leg};
 
-/// A part of the end's acceleration at u̇ = 0: scalar × (linear, angular).
+/// A part of the end's acceleration at u̇ = 0.
 #[derive(Debug, Clone, Copy)]
 pub struct BiasTerm<'a> {
-    /// The common factor, for instance -ω².
+    /// A factor, for instance -ω².
     pub scalar: Expr<'a>,
-    /// Linear acceleration per unit of the factor.
-    pub linear: Vector3<'a>,
-    /// Angular acceleration per unit of the factor.
-    pub angular: Vector3<'a>,
+    /// The acceleration per unit of the factor.
+    pub acceleration: SpatialMotion<'a>,
+}
+
+/// Rotation of a frame along the path.
+#[derive(Clone, Copy)]
+struct AngularState<'a> {
+    /// Angular velocity ω.
+    omega: Vector3<'a>,
+    /// Angular acceleration β at u̇ = 0.
+    beta: Vector3<'a>,
 }
 
 /// The end's linear and angular acceleration in the base frame at u̇ = 0, as a sum of terms.
@@ -35,21 +43,26 @@ pub(crate) fn end_bias<'a>(
         if !is_zero {
             terms.push(BiasTerm {
                 scalar,
-                linear,
-                angular,
+                acceleration: SpatialMotion { linear, angular },
             });
         }
     };
     let path = path_to_end(leg);
-    // Angular velocity and angular bias of every frame.
-    let mut states: Vec<[Vector3<'a>; 2]> = Vec::new();
+    let mut states: Vec<AngularState<'a>> = Vec::new();
     for (index, joint) in leg.joints.iter().enumerate() {
-        let [omega, beta] = joint.antecedent.map_or([zero; 2], |a| states[a]);
+        let still = AngularState {
+            omega: zero,
+            beta: zero,
+        };
+        let AngularState { omega, beta } = joint.antecedent.map_or(still, |a| states[a]);
         let frame = &frames.frames[index];
         let rate = frame.axis().scaled(rates.joint[index].value(arena, u));
-        let mut next = [omega, beta];
+        let mut next = AngularState { omega, beta };
         if joint.kind == JointKind::Revolute {
-            next = [omega + rate, beta + omega.cross(rate)];
+            next = AngularState {
+                omega: omega + rate,
+                beta: beta + omega.cross(rate),
+            };
         }
         if path.contains(&index) {
             let link = frame.link;
@@ -62,8 +75,8 @@ pub(crate) fn end_bias<'a>(
         }
         states.push(next);
     }
-    if let Some([_, beta]) = states.last() {
-        add(arena.one(), zero, *beta);
+    if let Some(last) = states.last() {
+        add(arena.one(), zero, last.beta);
     }
     terms
 }

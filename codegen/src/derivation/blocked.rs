@@ -10,9 +10,10 @@ use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::linear::apply;
 use super::names::coordinate_label;
-use super::parasitic::{Aside, SIX};
+use super::parasitic::{Aside, BlockedRow, SIX, dependent_components};
 use super::platform::PlatformPose;
 use super::robot::Robot;
+use super::spatial::SpatialMotion;
 use super::underivable::Underivable;
 use crate::cas::{Expr, Number, Ratio, Vector3};
 use crate::mechanism::numeric::best_conditioned;
@@ -29,30 +30,33 @@ impl<'a> Robot<'a> {
         let Some(independent) = self.mechanism.independent_coordinates() else {
             return Ok(None);
         };
-        let dependent: Vec<usize> = (0..SIX).filter(|at| !independent.contains(at)).collect();
+        let dependent = dependent_components(&independent);
         let all = self.blocked_rows();
         let at_home = DMatrix::from_fn(all.len(), dependent.len(), |row, column| {
-            self.at_home(all[row].1[dependent[column]])
+            self.at_home(all[row].entries[dependent[column]])
         });
         let chosen = best_conditioned(&at_home).into_iter();
         let rows = chosen.map(|row| all[row].clone()).collect();
         let home = |value: Expr<'a>| self.at_home(value);
-        let solved = Aside::new([independent, dependent], rows, &home);
-        let (aside, determinants) =
-            solved.ok_or_else(|| Underivable::SingularHome { leg: String::new() })?;
-        self.guard_coordinates(&determinants);
+        let aside = Aside::new(independent, rows, &home)
+            .ok_or_else(|| Underivable::SingularHome { leg: String::new() })?;
+        self.guard_coordinates(&aside.solved.determinants);
         Ok(Some(aside))
     }
 
-    /// All rows of A that legs leave over, per component of t, with the leg and their number in it.
-    fn blocked_rows(&self) -> Vec<((usize, usize), Vec<Expr<'a>>)> {
+    /// All rows of A.
+    fn blocked_rows(&self) -> Vec<BlockedRow<'a>> {
         let mut all = Vec::new();
         for (leg, state) in self.legs.iter().enumerate() {
             let Some(closure) = &state.closure else {
                 continue;
             };
-            for (at, row) in closure.blocked_rows().into_iter().enumerate() {
-                all.push(((leg, at), row));
+            for (index, entries) in closure.blocked_rows().into_iter().enumerate() {
+                all.push(BlockedRow {
+                    leg,
+                    index,
+                    entries,
+                });
             }
         }
         all
@@ -99,7 +103,8 @@ impl<'a> Robot<'a> {
         let missing: Vec<Expr<'a>> = aside
             .rows
             .iter()
-            .map(|&(leg, at)| {
+            .map(|row| {
+                let leg = row.leg;
                 let state = &self.legs[leg];
                 let Some(closure) = &state.closure else {
                     return self.arena.zero();
@@ -108,7 +113,7 @@ impl<'a> Robot<'a> {
                 self.arena.enter(&own.name);
                 let u = self.rates_of_leg(state, closure, twist, &moved);
                 let bias = end_bias(self.arena, own, &state.frames, &state.rates, &u);
-                let along = -closure.blocked_acceleration(self.arena, at, &moved, &bias);
+                let along = -closure.blocked_acceleration(self.arena, row.index, &moved, &bias);
                 self.arena.enter("");
                 along
             })
@@ -122,18 +127,19 @@ impl<'a> Robot<'a> {
     /// By how much the pose misses what the legs allow: for each row of A, with the leg.
     pub(super) fn blocked_errors(&self) -> Vec<(Expr<'a>, usize)> {
         let rows = self.aside.iter().flat_map(|aside| &aside.rows);
-        let missed = rows.filter_map(|&(leg, at)| {
+        let errors = rows.filter_map(|row| {
+            let leg = row.leg;
             let state = &self.legs[leg];
             let closure = state.closure.as_ref()?;
-            let (linear, angular) = missed(
+            let error = placement_error(
                 state.platform.as_ref()?,
                 closure.arm,
                 &self.mechanism.legs[leg],
                 &state.frames,
             )?;
-            Some((closure.blocked[at].along(linear, angular), leg))
+            Some((closure.blocked[row.index].along(&error), leg))
         });
-        missed.collect()
+        errors.collect()
     }
 
     /// The conditions on which the pose is one that the legs allow.
@@ -152,7 +158,7 @@ impl<'a> Robot<'a> {
     /// The conditions on which coordinates of the pose are zero, as those that legs allow are.
     pub(super) fn still_guards(&self, still: &[usize]) -> Vec<Guard<'a>> {
         let rows = self.aside.iter().flat_map(|aside| &aside.rows);
-        let leg = rows.map(|&(leg, _)| self.mechanism.legs[leg].name.clone());
+        let leg = rows.map(|row| self.mechanism.legs[row.leg].name.clone());
         let leg = leg.min().unwrap_or_default();
         let scale = self.mechanism.length_scale().max(1e-3);
         let guard = |&at: &usize| Guard {
@@ -171,12 +177,12 @@ impl<'a> Robot<'a> {
 
 /// By how much a leg's end misses its place, in the leg's axes: a position (m), and half the axial vector of the
 /// rotation that is left (rad for small ones).
-pub(super) fn missed<'a>(
+pub(super) fn placement_error<'a>(
     platform: &PlatformPose<'a>,
     arm: Vector3<'a>,
     leg: &Leg,
     frames: &LegFrames<'a>,
-) -> Option<(Vector3<'a>, Vector3<'a>)> {
+) -> Option<SpatialMotion<'a>> {
     let arena = arm.x().arena();
     let last = frames.frames.last()?;
     let into = frames.axes.transposed();
@@ -192,5 +198,8 @@ pub(super) fn missed<'a>(
         }
         _ => Vector3::zero(arena),
     };
-    Some((position, turn))
+    Some(SpatialMotion {
+        linear: position,
+        angular: turn,
+    })
 }

@@ -11,6 +11,7 @@ use super::joint::link_vector;
 use super::leg::LegState;
 use super::orientation::constant_rotation;
 use super::platform::centripetal;
+use super::spatial::{SpatialMotion, Wrench};
 use super::turn::Turn;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::description::StandardParameter;
@@ -37,7 +38,7 @@ pub struct BodyMotion<'a> {
     /// `U = [ω̇]× + [ω]×[ω]×`.
     pub u_matrix: Matrix3<'a>,
     /// ∂V/∂u_i and ∂Ω/∂u_i: partial velocities of the frame.
-    pub partials: Vec<[Vector3<'a>; 2]>,
+    pub partials: Vec<SpatialMotion<'a>>,
     /// Axes on which a wrench acts by its moment about a point.
     pub levers: Vec<Lever<'a>>,
 }
@@ -49,7 +50,7 @@ impl<'a> BodyMotion<'a> {
         omega: Vector3<'a>,
         alpha: Vector3<'a>,
         acceleration: Vector3<'a>,
-        partials: Vec<[Vector3<'a>; 2]>,
+        partials: Vec<SpatialMotion<'a>>,
         levers: Vec<Lever<'a>>,
     ) -> Self {
         let u_matrix = centripetal(omega, alpha);
@@ -63,20 +64,21 @@ impl<'a> BodyMotion<'a> {
         }
     }
 
-    /// The generalised forces on all u of a wrench (force, moment) in the body's frame.
+    /// The generalised forces on all u of a wrench in the body's frame.
     #[must_use]
-    pub fn project(&self, [force, moment]: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+    pub fn project(&self, wrench: Wrench<'a>) -> Vec<Expr<'a>> {
+        let Wrench { force, moment } = wrench;
         // One form only may be written: the graph takes a second one for the first.
         let moments: Vec<Vector3<'a>> = self
             .levers
             .iter()
             .map(|l| moment + l.vector.cross(force))
             .collect();
-        let on = |(u, [v, o]): (usize, &[Vector3<'a>; 2])| {
+        let on = |(u, partial): (usize, &SpatialMotion<'a>)| {
             let lever = self.levers.iter().position(|l| l.axes.contains(&u));
             match lever {
-                Some(at) => o.dot(moments[at]),
-                None => v.dot(force) + o.dot(moment),
+                Some(at) => partial.angular.dot(moments[at]),
+                None => partial.linear.dot(force) + partial.angular.dot(moment),
             }
         };
         self.partials.iter().enumerate().map(on).collect()
@@ -84,30 +86,27 @@ impl<'a> BodyMotion<'a> {
 
     /// The wrench at the frame's origin, per unit of an inertial parameter.
     #[must_use]
-    pub(crate) fn unit_wrench(
-        &self,
-        arena: &'a Arena,
-        parameter: StandardParameter,
-    ) -> [Vector3<'a>; 2] {
+    pub(crate) fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> Wrench<'a> {
         use StandardParameter as P;
         let zero = Vector3::zero(arena);
-        let first = |k: usize| {
-            [
-                self.u_matrix.column(k),
-                Vector3::unit(arena, k).cross(self.acceleration),
-            ]
+        let first = |k: usize| Wrench {
+            force: self.u_matrix.column(k),
+            moment: Vector3::unit(arena, k).cross(self.acceleration),
         };
         match parameter {
-            P::M => [self.acceleration, zero],
+            P::M => Wrench {
+                force: self.acceleration,
+                moment: zero,
+            },
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Ia | P::Fv | P::Fs | P::Off | P::K => [zero; 2],
-            P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => [zero; 2],
-            _ => [
-                zero,
-                second_moment(arena, parameter, self.omega, self.alpha),
-            ],
+            P::Ia | P::Fv | P::Fs | P::Off | P::K => Wrench::zero(arena),
+            P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => Wrench::zero(arena),
+            _ => Wrench {
+                force: zero,
+                moment: second_moment(arena, parameter, self.omega, self.alpha),
+            },
         }
     }
 }
@@ -151,12 +150,15 @@ pub(crate) fn leg_base<'a>(
 ) -> BodyMotion<'a> {
     let zero = Vector3::zero(arena);
     let into = constant_rotation(arena, leg.base.rotation).transposed();
-    let mut partials = vec![[zero; 2]; count];
+    let mut partials = vec![SpatialMotion::zero(arena); count];
     let Some(carrier) = carrier else {
         return BodyMotion::new(zero, zero, -(into * gravity), partials, vec![]);
     };
     let at = Vector3::constant(arena, leg.base.at);
-    let moved = |[v, o]: &[Vector3<'a>; 2]| [into * (*v + o.cross(at)), into * *o];
+    let moved = |partial: &SpatialMotion<'a>| SpatialMotion {
+        linear: into * partial.linear_at(at),
+        angular: into * partial.angular,
+    };
     partials.extend(carrier.partials.iter().map(moved));
     BodyMotion::new(
         into * carrier.omega,
@@ -167,25 +169,34 @@ pub(crate) fn leg_base<'a>(
     )
 }
 
-/// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or
+/// Quasi-velocities of a leg and their derivatives.
+#[derive(Debug, Clone)]
+pub struct LegRates<'a> {
+    /// Quasi-velocities u.
+    pub u: Vec<Expr<'a>>,
+    /// Their derivatives.
+    pub u_dot: Vec<Expr<'a>>,
+}
+
+/// Motion of all bodies of a leg for its quasi-velocities and their derivatives. `None` if a sine or
 /// cosine does not follow from the configuration.
 pub(crate) fn leg_bodies<'a>(
     arena: &'a Arena,
     leg: &Leg,
     state: &LegState<'a>,
     configuration: &Configuration<'a>,
-    (u, u_dot): (&[Expr<'a>], &[Expr<'a>]),
+    rates: &LegRates<'a>,
     base: &BodyMotion<'a>,
 ) -> Option<Vec<BodyMotion<'a>>> {
-    let (first_joint, rates) = (state.first_joint, &state.rates);
+    let first_joint = state.first_joint;
     let mut bodies: Vec<BodyMotion<'a>> = Vec::new();
     for (index, joint) in leg.joints.iter().enumerate() {
         let from = joint.antecedent.map_or(base, |a| &bodies[a]);
         let link = link_vector(arena, leg, index, first_joint, configuration)?;
         let turn = Turn::new(arena, leg, index, first_joint, configuration)?;
-        let form = &rates.joint[index];
-        let rate = form.value(arena, u);
-        let rate_dot = form.value(arena, u_dot);
+        let form = &state.rates.joint[index];
+        let rate = form.value(arena, &rates.u);
+        let rate_dot = form.value(arena, &rates.u_dot);
         let axis = Vector3::unit(arena, 2);
         let (mut omega, mut alpha) = (turn.apply(from.omega), turn.apply(from.alpha));
         let mut acceleration = turn.apply(from.acceleration + from.u_matrix * link);
@@ -201,12 +212,15 @@ pub(crate) fn leg_bodies<'a>(
             JointKind::Fixed => {}
         }
         let partials = (0..from.partials.len()).map(|i| {
-            let [v, o] = from.partials[i];
-            let mut partial = [turn.apply(v + o.cross(link)), turn.apply(o)];
+            let before = from.partials[i];
+            let mut partial = SpatialMotion {
+                linear: turn.apply(before.linear_at(link)),
+                angular: turn.apply(before.angular),
+            };
             let own = axis.scaled(arena.number(form.coefficient(i)));
             match joint.kind {
-                JointKind::Revolute => partial[1] = partial[1] + own,
-                JointKind::Prismatic => partial[0] = partial[0] + own,
+                JointKind::Revolute => partial.angular = partial.angular + own,
+                JointKind::Prismatic => partial.linear = partial.linear + own,
                 JointKind::Fixed => {}
             }
             partial

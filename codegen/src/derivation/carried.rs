@@ -10,6 +10,7 @@ use super::body::second_moment;
 use super::inertia::Inertia;
 use super::orientation::constant_rotation;
 use super::platform::{PlatformMotion, PlatformPose, centripetal, on_twist};
+use super::spatial::{SpatialMotion, Wrench};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{End, Leg, TwistCoordinate};
@@ -108,58 +109,65 @@ impl<'a> CarriedBody<'a> {
 
     /// The wrench at the body frame's origin per unit of an inertial parameter, in the base's axes.
     #[must_use]
-    pub(crate) fn unit_wrench(
-        &self,
-        arena: &'a Arena,
-        parameter: StandardParameter,
-    ) -> [Vector3<'a>; 2] {
+    pub(crate) fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> Wrench<'a> {
         use StandardParameter as P;
         let zero = Vector3::zero(arena);
         let axes = || self.platform * self.mounted;
         let first = |k: usize| {
             let moment = axes().column(k).cross(self.acceleration);
-            [self.centripetal.column(k), moment]
+            let force = self.centripetal.column(k);
+            Wrench { force, moment }
         };
         match parameter {
-            P::M => [self.acceleration, zero],
+            P::M => Wrench {
+                force: self.acceleration,
+                moment: zero,
+            },
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
+            P::Ia | P::Fv | P::Fs | P::Off => Wrench::zero(arena),
             _ => {
                 let moment = second_moment(arena, parameter, self.omega, self.alpha);
-                [zero, self.platform * (self.mounted * moment)]
+                Wrench {
+                    force: zero,
+                    moment: self.platform * (self.mounted * moment),
+                }
             }
         }
     }
 
     /// The wrench of an inertia at the body frame's origin, in the base's axes.
-    pub(super) fn wrench(&self, inertia: &Inertia<'a>) -> [Vector3<'a>; 2] {
+    pub(super) fn wrench(&self, inertia: &Inertia<'a>) -> Wrench<'a> {
         let axes = self.platform * self.mounted;
         let force = self.acceleration.scaled(inertia.mass) + self.centripetal * inertia.first;
         let moment = inertia.turning_moment(self.omega, self.alpha);
         let turned = (axes * inertia.first).cross(self.acceleration);
-        [force, turned + axes * moment]
+        Wrench {
+            force,
+            moment: turned + axes * moment,
+        }
     }
 
-    /// The generalised force of a unit of an inertial parameter on each of some coordinates, of which it is told how
-    /// they move the platform: velocity of its origin and angular velocity. Moments are taken in the body's own
-    /// axes, where a second moment has few components, and meet the angular velocities there.
+    /// The generalised force of a unit of an inertial parameter on each of some coordinates.
+    ///
+    /// `partials` are the platform's partial velocities with respect to these coordinates. Moments are taken in the
+    /// body's own axes, where a second moment has few components.
     pub(super) fn on_partials(
         &self,
         arena: &'a Arena,
         parameter: StandardParameter,
-        partials: &[[Vector3<'a>; 2]],
+        partials: &[SpatialMotion<'a>],
     ) -> Vec<Expr<'a>> {
         use StandardParameter as P;
         let into = |vector: Vector3<'a>| {
             let on_platform = self.platform.transposed() * vector;
             self.mounted.transposed() * on_platform
         };
-        let on = |[velocity, turning]: &[Vector3<'a>; 2]| {
-            let along = |force: Vector3<'a>| force.dot(*velocity + turning.cross(self.arm));
+        let on = |partial: &SpatialMotion<'a>| {
+            let along = |force: Vector3<'a>| force.dot(partial.linear_at(self.arm));
             let first = |k: usize| {
-                let lifted = into(self.acceleration).cross(into(*turning));
+                let lifted = into(self.acceleration).cross(into(partial.angular));
                 along(self.centripetal.column(k)) + lifted.0[k]
             };
             match parameter {
@@ -168,7 +176,10 @@ impl<'a> CarriedBody<'a> {
                 P::My => first(1),
                 P::Mz => first(2),
                 P::Ia | P::Fv | P::Fs | P::Off => arena.zero(),
-                _ => second_moment(arena, parameter, self.omega, self.alpha).dot(into(*turning)),
+                _ => {
+                    let moment = second_moment(arena, parameter, self.omega, self.alpha);
+                    moment.dot(into(partial.angular))
+                }
             }
         };
         partials.iter().map(on).collect()
@@ -176,7 +187,7 @@ impl<'a> CarriedBody<'a> {
 
     /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.
     #[must_use]
-    pub fn project(&self, twist: &[TwistCoordinate], wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+    pub fn project(&self, twist: &[TwistCoordinate], wrench: Wrench<'a>) -> Vec<Expr<'a>> {
         on_twist(twist, self.arm, wrench)
     }
 }

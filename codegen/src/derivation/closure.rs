@@ -15,6 +15,7 @@ use super::elimination::{Inverse, Rows, inverse};
 use super::frames::{LegFrames, joint_columns};
 use super::platform::{Directions, PlatformMotion, PlatformPose};
 use super::rates::Rates;
+use super::spatial::{SpatialMotion, Wrench};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::Leg;
 use crate::mechanism::numeric::best_conditioned;
@@ -22,13 +23,19 @@ use nalgebra::DMatrix;
 
 /// A wrench as factor × (force, moment).
 #[derive(Debug, Clone, Copy)]
-pub struct Wrench<'a> {
+pub struct FactoredWrench<'a> {
     /// The factor with the reciprocal of the determinant.
     pub factor: Expr<'a>,
-    /// Force.
-    pub force: Vector3<'a>,
-    /// Moment about P.
-    pub moment: Vector3<'a>,
+    /// Force, and moment about P.
+    pub wrench: Wrench<'a>,
+}
+
+/// The rows of the six-vector of a leg's end (translation, rotation) that its closure uses.
+pub(super) struct ClosureRows {
+    /// Independent rows, as many as the leg has quasi-velocities.
+    pub(super) independent: Vec<usize>,
+    /// Further shared rows, which restrict a platform with parasitic motion.
+    pub(super) remaining: Vec<usize>,
 }
 
 /// The closure of a leg: its Jacobian's inverse as wrenches.
@@ -39,7 +46,7 @@ pub struct LegClosure<'a> {
     /// n_i of every u_i, in the base frame.
     pub moments: Vec<Vector3<'a>>,
     /// The same wrenches in the leg's axes, with the reciprocals of the determinants taken out.
-    pub wrenches: Vec<Wrench<'a>>,
+    pub wrenches: Vec<FactoredWrench<'a>>,
     /// The determinant that each row was divided by.
     pub determinants: Vec<Expr<'a>>,
     /// The determinant of the leg's Jacobian J_k.
@@ -50,24 +57,28 @@ pub struct LegClosure<'a> {
     pub arm: Vector3<'a>,
     /// The orientation of the leg's axes in the base frame.
     pub axes: Matrix3<'a>,
-    /// Wrenches in the leg's axes that no joint feels: of the shared components that are more than the joints,
-    /// where the platform moves aside.
-    pub(super) blocked: Vec<Wrench<'a>>,
+    /// Wrenches in the leg's axes that do no work on any joint's motion, one for each shared row beyond those of the
+    /// joints: the constraints on a platform with parasitic motion.
+    pub(super) blocked: Vec<FactoredWrench<'a>>,
     /// In which directions the independent coordinates move what the leg ends on.
     directions: Directions<'a>,
 }
 
-impl<'a> Wrench<'a> {
-    /// Its product with a motion, or with what is missed of a place.
-    pub(super) fn along(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Expr<'a> {
-        self.factor * (self.force.dot(linear) + self.moment.dot(angular))
+impl<'a> FactoredWrench<'a> {
+    /// Its product with a motion, or with a small displacement.
+    pub(super) fn along(&self, motion: &SpatialMotion<'a>) -> Expr<'a> {
+        self.factor * self.wrench.power(motion)
+    }
+
+    /// The wrench with its factor multiplied in.
+    fn value(&self) -> Wrench<'a> {
+        self.wrench.scaled(self.factor)
     }
 }
 
 impl<'a> LegClosure<'a> {
-    /// Derives the closure. `rows` are the independent rows of the six-vector; `home` evaluates an
-    /// expression at the home configuration. `None` for a structurally singular leg. `over` are shared rows
-    /// beside these that a platform which moves aside has to keep.
+    /// Derives the closure. `home` evaluates an expression at the home configuration. `None` for a structurally
+    /// singular leg.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
@@ -75,13 +86,14 @@ impl<'a> LegClosure<'a> {
         frames: &LegFrames<'a>,
         rates: &Rates,
         platform: &PlatformPose<'a>,
-        [rows, over]: [&[usize]; 2],
+        rows: &ClosureRows,
         home: &dyn Fn(Expr<'a>) -> f64,
     ) -> Option<Self> {
         let columns = end_columns(arena, leg, frames, rates);
-        let matrix: Rows<'a> = rows
+        let independent = &rows.independent;
+        let matrix: Rows<'a> = independent
             .iter()
-            .map(|&row| columns.iter().map(|c| c[row / 3].0[row % 3]).collect())
+            .map(|&row| columns.iter().map(|c| c.component(row)).collect())
             .collect();
         let Inverse {
             scaled,
@@ -89,9 +101,9 @@ impl<'a> LegClosure<'a> {
             determinant,
             ..
         } = inverse(&matrix, home)?;
-        let wrench = |part: usize, entries: &Vec<Expr<'a>>| {
+        let part = |part: usize, entries: &Vec<Expr<'a>>| {
             let mut vector = Vector3::zero(arena);
-            for (&row, &entry) in rows.iter().zip(entries) {
+            for (&row, &entry) in independent.iter().zip(entries) {
                 if row / 3 == part {
                     vector.0[row % 3] = entry;
                 }
@@ -100,15 +112,18 @@ impl<'a> LegClosure<'a> {
         };
         let at = leg.end.as_ref()?.point();
         let arm = platform.arm(at);
-        let wrenches: Vec<Wrench<'a>> = scaled
+        let wrenches: Vec<FactoredWrench<'a>> = scaled
             .iter()
-            .map(|row| Wrench {
+            .map(|row| FactoredWrench {
                 factor: row.factor,
-                force: wrench(0, &row.entries),
-                moment: wrench(1, &row.entries),
+                wrench: Wrench {
+                    force: part(0, &row.entries),
+                    moment: part(1, &row.entries),
+                },
             })
             .collect();
-        let blocked = over
+        let blocked = rows
+            .remaining
             .iter()
             .map(|&row| blocked(arena, row, &columns, &wrenches))
             .collect();
@@ -116,11 +131,11 @@ impl<'a> LegClosure<'a> {
         Some(Self {
             forces: wrenches
                 .iter()
-                .map(|w| in_base(w.force, w.factor))
+                .map(|w| in_base(w.wrench.force, w.factor))
                 .collect(),
             moments: wrenches
                 .iter()
-                .map(|w| in_base(w.moment, w.factor))
+                .map(|w| in_base(w.wrench.moment, w.factor))
                 .collect(),
             wrenches,
             blocked,
@@ -136,77 +151,76 @@ impl<'a> LegClosure<'a> {
     /// ∂u_i/∂v for all u, r numbers each.
     #[must_use]
     pub(crate) fn reduced_jacobian(&self) -> Rows<'a> {
-        let row = |(force, moment): (&Vector3<'a>, &Vector3<'a>)| {
-            self.directions.components(self.arm, [*force, *moment])
+        let row = |(&force, &moment)| {
+            let wrench = Wrench { force, moment };
+            self.directions.components(self.arm, wrench)
         };
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
 
-    /// Velocity of the leg's end and angular velocity, in the leg's axes, per coordinate of which it is told how they
-    /// move what the leg ends on: velocity of its origin and angular velocity.
-    fn ends(&self, partials: &[[Vector3<'a>; 2]]) -> Vec<[Vector3<'a>; 2]> {
-        let end = |[velocity, turning]: &[Vector3<'a>; 2]| {
-            let linear = *velocity + turning.cross(self.arm);
-            [self.turned_in(linear), self.turned_in(*turning)]
+    /// Partial velocities of the leg's end, in the leg's axes, of those of the origin of what the leg ends on.
+    fn ends(&self, partials: &[SpatialMotion<'a>]) -> Vec<SpatialMotion<'a>> {
+        let end = |partial: &SpatialMotion<'a>| SpatialMotion {
+            linear: self.turned_in(partial.linear_at(self.arm)),
+            angular: self.turned_in(partial.angular),
         };
         partials.iter().map(end).collect()
     }
 
-    /// The velocity of the leg's end per independent coordinate, or per coordinate of which it is told how they move what
-    /// the leg ends on, in the axes in which that is seen.
+    /// The velocity of the leg's end per independent coordinate, in the axes in which the closure sees what the leg
+    /// ends on; with `partials`, per coordinate of these.
     pub(super) fn end_velocities(
         &self,
         arena: &'a Arena,
-        partials: Option<&[[Vector3<'a>; 2]]>,
+        partials: Option<&[SpatialMotion<'a>]>,
     ) -> Vec<Vector3<'a>> {
         match partials {
             Some(partials) => {
-                let moved =
-                    |[velocity, turning]: &[Vector3<'a>; 2]| *velocity + turning.cross(self.arm);
+                let moved = |partial: &SpatialMotion<'a>| partial.linear_at(self.arm);
                 partials.iter().map(moved).collect()
             }
             None => {
                 let columns = self.directions.columns(arena, self.arm).into_iter();
-                columns.map(|[velocity, _]| velocity).collect()
+                columns.map(|column| column.linear).collect()
             }
         }
     }
 
-    /// The joints' rates per such coordinate: all rows share the velocities of the leg's end.
+    /// The joints' rates per coordinate of `partials`. All rows share the velocities of the leg's end.
     #[must_use]
-    pub(super) fn rows_on(&self, partials: &[[Vector3<'a>; 2]]) -> Rows<'a> {
+    pub(super) fn rows_on(&self, partials: &[SpatialMotion<'a>]) -> Rows<'a> {
         let ends = self.ends(partials);
-        let row = |wrench: &Wrench<'a>| {
-            let [force, moment] =
-                [wrench.force, wrench.moment].map(|part| part.scaled(wrench.factor));
-            let on =
-                |[linear, angular]: &[Vector3<'a>; 2]| force.dot(*linear) + moment.dot(*angular);
-            ends.iter().map(on).collect()
+        let row = |wrench: &FactoredWrench<'a>| {
+            let value = wrench.value();
+            ends.iter().map(|end| value.power(end)).collect()
         };
         self.wrenches.iter().map(row).collect()
     }
 
-    /// The forces s on the u on such coordinates, as one force at the leg's end.
+    /// The generalised forces on the coordinates of `partials` of the forces s on the u, as one force at the leg's end.
     #[must_use]
     pub(super) fn project_on(
         &self,
-        partials: &[[Vector3<'a>; 2]],
+        partials: &[SpatialMotion<'a>],
         forces: &[Expr<'a>],
     ) -> Vec<Expr<'a>> {
         let parts = self.wrenches.iter().zip(forces);
         let zero = Vector3::zero(self.determinant.arena());
         // The products of factors and forces are had for the rows anyway.
         let force = parts.fold(zero, |sum, (w, s)| {
-            sum + w.force.scaled(w.factor).scaled(*s)
+            sum + w.wrench.force.scaled(w.factor).scaled(*s)
         });
         let ends = self.ends(partials).into_iter();
-        ends.map(|[linear, _]| force.dot(linear)).collect()
+        ends.map(|end| force.dot(end.linear)).collect()
     }
 
     /// ∂u_i/∂v times a factor that divisors of the row vanish in.
     #[must_use]
     pub(super) fn reduced_row(&self, rate: usize, factor: Expr<'a>) -> Vec<Expr<'a>> {
-        let wrench = [self.forces[rate], self.moments[rate]].map(|part| part.scaled(factor));
+        let wrench = Wrench {
+            force: self.forces[rate].scaled(factor),
+            moment: self.moments[rate].scaled(factor),
+        };
         self.directions.components(self.arm, wrench)
     }
 
@@ -245,19 +259,28 @@ impl<'a> LegClosure<'a> {
             parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s))
         } else {
             let parts = self.wrenches.iter().zip(forces);
-            let own = parts.fold(zero, |sum, (w, s)| sum + w.force.scaled(w.factor * *s));
+            let own = parts.fold(zero, |sum, (w, s)| {
+                sum + w.wrench.force.scaled(w.factor * *s)
+            });
             self.axes * own
         };
-        self.directions.components(self.arm, [force, zero])
+        let wrench = Wrench {
+            force,
+            moment: zero,
+        };
+        self.directions.components(self.arm, wrench)
     }
 
     /// The rows A of what no joint feels, per component of the platform's velocity.
     #[must_use]
     pub(super) fn blocked_rows(&self) -> Rows<'a> {
-        let row = |wrench: &Wrench<'a>| {
-            let [force, moment] = [wrench.force, wrench.moment]
-                .map(|vector| (self.axes * vector).scaled(wrench.factor));
-            self.directions.components(self.arm, [force, moment])
+        let row = |wrench: &FactoredWrench<'a>| {
+            let in_base = |vector: Vector3<'a>| (self.axes * vector).scaled(wrench.factor);
+            let wrench = Wrench {
+                force: in_base(wrench.wrench.force),
+                moment: in_base(wrench.wrench.moment),
+            };
+            self.directions.components(self.arm, wrench)
         };
         self.blocked.iter().map(row).collect()
     }
@@ -271,20 +294,27 @@ impl<'a> LegClosure<'a> {
         motion: &PlatformMotion<'a>,
         bias: &[BiasTerm<'a>],
     ) -> Expr<'a> {
-        let linear = self.turned_in(motion.point_acceleration(self.at, self.arm));
-        let angular = self.turned_in(motion.angular_acceleration);
-        let (b, beta) = summed(arena, bias);
-        self.blocked[at].along(linear - b, angular - beta)
+        let acceleration = self.end_acceleration(motion);
+        let bias = summed(arena, bias);
+        self.blocked[at].along(&acceleration.minus(&bias))
     }
 
     /// The quasi-velocities u for a platform motion.
     #[must_use]
     pub fn velocities(&self, motion: &PlatformMotion<'a>) -> Vec<Expr<'a>> {
         let velocity = motion.point_velocity(self.arm);
-        self.apply(
-            self.turned_in(velocity),
-            self.turned_in(motion.angular_velocity),
-        )
+        self.apply(&SpatialMotion {
+            linear: self.turned_in(velocity),
+            angular: self.turned_in(motion.angular_velocity),
+        })
+    }
+
+    /// The acceleration of the leg's end, in the leg's axes.
+    fn end_acceleration(&self, motion: &PlatformMotion<'a>) -> SpatialMotion<'a> {
+        SpatialMotion {
+            linear: self.turned_in(motion.point_acceleration(self.at, self.arm)),
+            angular: self.turned_in(motion.angular_acceleration),
+        }
     }
 
     /// The derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
@@ -301,13 +331,12 @@ impl<'a> LegClosure<'a> {
         bias: &[BiasTerm<'a>],
         names: &[String],
     ) -> Vec<Expr<'a>> {
-        let linear = self.turned_in(motion.point_acceleration(self.at, self.arm));
-        let angular = self.turned_in(motion.angular_acceleration);
+        let acceleration = self.end_acceleration(motion);
         if let Some(products) = self.bias_products(arena, bias) {
             let wrenches = self.wrenches.iter().zip(products).zip(names);
             return wrenches
                 .map(|((wrench, products), name)| {
-                    let start = wrench.force.dot(linear) + wrench.moment.dot(angular);
+                    let start = wrench.wrench.power(&acceleration);
                     let terms = bias.iter().zip(products);
                     let (constant, other): (Vec<_>, Vec<_>) =
                         terms.partition(|(_, product)| product.as_number().is_some());
@@ -319,15 +348,14 @@ impl<'a> LegClosure<'a> {
                 })
                 .collect();
         }
-        let (b, beta) = summed(arena, bias);
-        self.apply(linear - b, angular - beta)
+        self.apply(&acceleration.minus(&summed(arena, bias)))
     }
 
     /// The products of all wrenches with all bias terms, if each is a constant or a known node.
     fn bias_products(&self, arena: &'a Arena, bias: &[BiasTerm<'a>]) -> Option<Rows<'a>> {
         let known = arena.len();
-        let product = |wrench: &Wrench<'a>, term: &BiasTerm<'a>| {
-            let product = wrench.force.dot(term.linear) + wrench.moment.dot(term.angular);
+        let product = |wrench: &FactoredWrench<'a>, term: &BiasTerm<'a>| {
+            let product = wrench.wrench.power(&term.acceleration);
             let (_, base) = product.factor_and_base();
             let is_known = base.as_number().is_some() || base.handle().index() < known;
             is_known.then_some(product)
@@ -337,15 +365,15 @@ impl<'a> LegClosure<'a> {
     }
 
     /// Σ of the wrenches' products with a motion of the leg's end, all in the leg's axes.
-    fn apply(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Vec<Expr<'a>> {
-        let one = |wrench: &Wrench<'a>| {
+    fn apply(&self, motion: &SpatialMotion<'a>) -> Vec<Expr<'a>> {
+        let one = |wrench: &FactoredWrench<'a>| {
             if self.is_in_base() {
                 // Factor and force are multiplied anyway, for the reduced Jacobian.
-                let (f, n) = (wrench.force, wrench.moment);
+                let (f, n) = (wrench.wrench.force, wrench.wrench.moment);
                 let k = wrench.factor;
-                return f.scaled(k).dot(linear) + n.scaled(k).dot(angular);
+                return f.scaled(k).dot(motion.linear) + n.scaled(k).dot(motion.angular);
             }
-            wrench.factor * (wrench.force.dot(linear) + wrench.moment.dot(angular))
+            wrench.along(motion)
         };
         self.wrenches.iter().map(one).collect()
     }
@@ -359,56 +387,65 @@ impl<'a> LegClosure<'a> {
     }
 }
 
-/// The bias acceleration as vectors.
-fn summed<'a>(arena: &'a Arena, bias: &[BiasTerm<'a>]) -> (Vector3<'a>, Vector3<'a>) {
-    let (mut b, mut beta) = (Vector3::zero(arena), Vector3::zero(arena));
-    for term in bias {
-        b = b + term.linear.scaled(term.scalar);
-        beta = beta + term.angular.scaled(term.scalar);
-    }
-    (b, beta)
+/// The bias acceleration as one sum.
+fn summed<'a>(arena: &'a Arena, bias: &[BiasTerm<'a>]) -> SpatialMotion<'a> {
+    let still = SpatialMotion::zero(arena);
+    bias.iter().fold(still, |sum, term| {
+        sum.plus_scaled(&term.acceleration, term.scalar)
+    })
 }
 
-/// The wrench of a component of the end's motion less what joints give to it: no joint feels it.
+/// The wrench along a component of the end's motion, less its parts that act on joints: reciprocal to all joints.
 fn blocked<'a>(
     arena: &'a Arena,
     row: usize,
-    columns: &[[Vector3<'a>; 2]],
-    wrenches: &[Wrench<'a>],
-) -> Wrench<'a> {
-    let mut parts = [Vector3::zero(arena); 2];
-    parts[row / 3] = Vector3::unit(arena, row % 3);
-    let [mut force, mut moment] = parts;
-    for (column, wrench) in columns.iter().zip(wrenches) {
-        let part = column[row / 3].0[row % 3] * wrench.factor;
-        force = force - wrench.force.scaled(part);
-        moment = moment - wrench.moment.scaled(part);
+    columns: &[SpatialMotion<'a>],
+    wrenches: &[FactoredWrench<'a>],
+) -> FactoredWrench<'a> {
+    let unit = |part: usize| {
+        if row / 3 == part {
+            Vector3::unit(arena, row % 3)
+        } else {
+            Vector3::zero(arena)
+        }
+    };
+    let mut rest = Wrench {
+        force: unit(0),
+        moment: unit(1),
+    };
+    for (column, own) in columns.iter().zip(wrenches) {
+        let part = column.component(row) * own.factor;
+        rest.force = rest.force - own.wrench.force.scaled(part);
+        rest.moment = rest.moment - own.wrench.moment.scaled(part);
     }
-    Wrench {
+    FactoredWrench {
         factor: arena.one(),
-        force,
-        moment,
+        wrench: rest,
     }
 }
 
-/// Of the shared components of a leg's end in the leg's axes those that determine its joint rates best at home,
-/// and the others.
+/// Splits the shared rows of a leg's end, in the leg's axes: independent are those that determine the joint rates best
+/// at home.
 pub(super) fn split_rows<'a>(
     arena: &'a Arena,
     leg: &Leg,
     frames: &LegFrames<'a>,
     rates: &Rates,
     home: &dyn Fn(Expr<'a>) -> f64,
-) -> [Vec<usize>; 2] {
+) -> ClosureRows {
     let columns = end_columns(arena, leg, frames, rates);
     let shared = leg.shared_components();
     let at_home = DMatrix::from_fn(shared.len(), columns.len(), |row, column| {
-        home(columns[column][shared[row] / 3].0[shared[row] % 3])
+        home(columns[column].component(shared[row]))
     });
     let chosen = best_conditioned(&at_home);
-    let (own, over): (Vec<usize>, Vec<usize>) =
-        (0..shared.len()).partition(|row| chosen.contains(row));
-    [own, over].map(|rows| rows.into_iter().map(|row| shared[row]).collect())
+    let (independent, remaining) =
+        (0..shared.len()).partition::<Vec<_>, _>(|row| chosen.contains(row));
+    let shared = |rows: Vec<usize>| rows.into_iter().map(|row| shared[row]).collect();
+    ClosureRows {
+        independent: shared(independent),
+        remaining: shared(remaining),
+    }
 }
 
 /// E_i = ∂Ṗ/∂u_i and W_i = ∂ω/∂u_i of the leg's end.
@@ -417,16 +454,14 @@ fn end_columns<'a>(
     leg: &Leg,
     frames: &LegFrames<'a>,
     rates: &Rates,
-) -> Vec<[Vector3<'a>; 2]> {
+) -> Vec<SpatialMotion<'a>> {
     let joint_columns = joint_columns(arena, leg, frames);
     let column = |i: usize| {
-        let mut sum = [Vector3::zero(arena); 2];
-        for (columns, form) in joint_columns.iter().zip(&rates.joint) {
-            let factor = arena.number(form.coefficient(i));
-            sum[0] = sum[0] + columns[0].scaled(factor);
-            sum[1] = sum[1] + columns[1].scaled(factor);
-        }
-        sum
+        let still = SpatialMotion::zero(arena);
+        let parts = joint_columns.iter().zip(&rates.joint);
+        parts.fold(still, |sum, (column, form)| {
+            sum.plus_scaled(column, arena.number(form.coefficient(i)))
+        })
     };
     (0..leg.independent().count()).map(column).collect()
 }

@@ -14,6 +14,7 @@ use super::leg::LegState;
 use super::names::{Names, joined};
 use super::parameter::BodyParameter;
 use super::robot::Robot;
+use super::spatial::{SpatialMotion, Wrench};
 use super::turn::Turn;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::description::StandardParameter;
@@ -50,6 +51,32 @@ pub(super) struct Chain<'c, 'a> {
 struct OnJoint<'a> {
     moment: Expr<'a>,
     force: Expr<'a>,
+}
+
+/// A joint's wrench in the axes of the joint's antecedent.
+pub(super) struct OnAntecedent<'a> {
+    /// The wrench at the joint's origin.
+    pub(super) at_joint: Wrench<'a>,
+    /// The moment of its force about the antecedent's origin.
+    pub(super) lever_moment: Vector3<'a>,
+}
+
+impl<'a> OnAntecedent<'a> {
+    /// The wrench at the antecedent's origin.
+    pub(super) fn at_antecedent(&self) -> Wrench<'a> {
+        Wrench {
+            force: self.at_joint.force,
+            moment: self.at_joint.moment + self.lever_moment,
+        }
+    }
+}
+
+/// What a wrench on a body does on its way to the base.
+pub(super) struct WrenchToBase<'a> {
+    /// The forces on the quasi-velocities of the leg.
+    pub(super) forces: Vec<Expr<'a>>,
+    /// The wrench on the base.
+    pub(super) at_base: Wrench<'a>,
 }
 
 impl<'a> Robot<'a> {
@@ -171,54 +198,55 @@ impl<'a> Chain<'_, 'a> {
         of.turned_back(&link.turn).moved_onto(onto, link.at)
     }
 
-    /// Force and moment at a joint's origin in the antecedent's axes, and the moment of the force about the
-    /// antecedent's origin.
-    pub(super) fn handed_down(&self, j: usize, wrench: [Vector3<'a>; 2]) -> [Vector3<'a>; 3] {
+    /// A wrench at a joint's origin, in the axes of the antecedent.
+    pub(super) fn on_antecedent(&self, j: usize, wrench: &Wrench<'a>) -> OnAntecedent<'a> {
         let link = &self.links[j];
-        let [force, moment] = wrench.map(|part| link.turn.back(part));
-        [force, moment, link.at.cross(force)]
+        let at_joint = link.turn.back_wrench(wrench);
+        OnAntecedent {
+            at_joint,
+            lever_moment: link.at.cross(at_joint.force),
+        }
     }
 
-    /// Force and moment about the base's origin, in its axes, for the quasi-acceleration k. `None` where nothing
-    /// moves.
-    pub(super) fn base_wrench(&self, k: usize) -> Option<[Vector3<'a>; 2]> {
+    /// The wrench about the base's origin, in its axes, for the quasi-acceleration k. `None` where nothing moves.
+    pub(super) fn base_wrench(&self, k: usize) -> Option<Wrench<'a>> {
         let mut on = vec![self.nothing(); self.links.len()];
-        let still = [Vector3::zero(self.arena); 2];
+        let still = SpatialMotion::zero(self.arena);
         let moved = self.roots().filter_map(|first| {
-            let [force, moment] = self.wrench(first, k, still, &mut on)?;
-            Some([force, moment + self.links[first].at.cross(force)])
+            let Wrench { force, moment } = self.wrench(first, k, &still, &mut on)?;
+            let moment = moment + self.links[first].at.cross(force);
+            Some(Wrench { force, moment })
         });
-        moved.reduce(|sum, one| [sum[0] + one[0], sum[1] + one[1]])
+        moved.reduce(|sum, one| sum.plus(&one))
     }
 
-    /// What a wrench on a body, about its frame's origin, puts on the quasi-velocities on its way to the base, and
-    /// what arrives there.
-    pub(super) fn read_along(
-        &self,
-        body: usize,
-        [mut force, mut moment]: [Vector3<'a>; 2],
-    ) -> (Vec<Expr<'a>>, [Vector3<'a>; 2]) {
+    /// The forces on the quasi-velocities, and the wrench on the base, of a wrench at the origin of a body's frame.
+    pub(super) fn project_to_base(&self, body: usize, wrench: Wrench<'a>) -> WrenchToBase<'a> {
+        let mut wrench = wrench;
         let rates = &self.state.rates;
         let count = self.leg.independent().count();
         let mut forces = vec![self.arena.zero(); count];
-        let mut about_axis = moment.z();
+        let mut about_axis = wrench.moment.z();
         let mut at = Some(body);
         while let Some(j) = at {
             for (i, sum) in forces.iter_mut().enumerate() {
                 *sum = *sum + about_axis * rates.turning[j].coefficient(i);
                 if self.kind(j) == JointKind::Prismatic {
-                    *sum = *sum + force.z() * rates.joint[j].coefficient(i);
+                    *sum = *sum + wrench.force.z() * rates.joint[j].coefficient(i);
                 }
             }
-            let [handed, turned, lever] = self.handed_down(j, [force, moment]);
+            let onto = self.on_antecedent(j, &wrench);
             about_axis = match rates.run[j] {
-                None => lever.z() + turned.z(),
-                Some(_) => lever.z(),
+                None => onto.lever_moment.z() + onto.at_joint.moment.z(),
+                Some(_) => onto.lever_moment.z(),
             };
-            (force, moment) = (handed, turned + lever);
+            wrench = onto.at_antecedent();
             at = self.antecedent(j);
         }
-        (forces, [force, moment])
+        WrenchToBase {
+            forces,
+            at_base: wrench,
+        }
     }
 
     fn nothing(&self) -> OnJoint<'a> {
@@ -233,9 +261,9 @@ impl<'a> Chain<'_, 'a> {
     pub(super) fn column(&self, k: usize) -> Vec<Expr<'a>> {
         let zero = self.arena.zero();
         let mut on = vec![self.nothing(); self.links.len()];
-        let still = [Vector3::zero(self.arena); 2];
+        let still = SpatialMotion::zero(self.arena);
         for first in self.roots() {
-            let _ = self.wrench(first, k, still, &mut on);
+            let _ = self.wrench(first, k, &still, &mut on);
         }
         let rates = &self.state.rates;
         let entry = |i: usize| {
@@ -260,67 +288,71 @@ impl<'a> Chain<'_, 'a> {
         (0..self.links.len()).filter(|&j| self.leg.joints[j].antecedent.is_none())
     }
 
-    /// Force and moment about a joint's origin, in the antecedent's axes, of all that is behind it, for
-    /// the quasi-acceleration k and the accelerations of the antecedent frame. `None` where nothing moves.
+    /// The wrench about a joint's origin, in the antecedent's axes, of all bodies behind the joint, for the
+    /// quasi-acceleration k and the acceleration of the antecedent frame. `None` where nothing moves.
     fn wrench(
         &self,
         j: usize,
         k: usize,
-        [linear, angular]: [Vector3<'a>; 2],
+        antecedent: &SpatialMotion<'a>,
         on: &mut [OnJoint<'a>],
-    ) -> Option<[Vector3<'a>; 2]> {
+    ) -> Option<Wrench<'a>> {
         let link = &self.links[j];
         let own = self.state.rates.joint[j].coefficient(k);
-        let arrived = linear + angular.cross(link.at);
+        let angular = antecedent.angular;
+        let arrived = antecedent.linear_at(link.at);
         let rests = own.is_zero() && arrived.is_zero() && angular.is_zero();
         if rests && !self.behind(j).any(|c| self.is_moved(c, k)) {
             return None;
         }
         let axis = Vector3::unit(self.arena, 2).scaled(self.arena.number(own));
-        let (mut turning, mut moving) = (link.turn.apply(angular), link.turn.apply(arrived));
+        let angular = link.turn.apply(angular);
+        let linear = link.turn.apply(arrived);
+        let mut motion = SpatialMotion { linear, angular };
         match self.leg.joints[j].kind {
-            JointKind::Revolute => turning = turning + axis,
-            JointKind::Prismatic => moving = moving + axis,
+            JointKind::Revolute => motion.angular = motion.angular + axis,
+            JointKind::Prismatic => motion.linear = motion.linear + axis,
             JointKind::Fixed => {}
         }
         let is_one = self.is_one(j, k);
         let slides = self.leg.joints[j].kind == JointKind::Prismatic;
-        if is_one && turning.is_zero() && !slides && !self.counts(j, k) {
+        if is_one && motion.angular.is_zero() && !slides && !self.counts(j, k) {
             // It is carried along without a turn, and nobody asks for the moment about its axis.
             let moment = link.turned.first.cross(arrived);
-            return Some([arrived.scaled(link.turned.mass), moment]);
+            let force = arrived.scaled(link.turned.mass);
+            return Some(Wrench { force, moment });
         }
         let of = if is_one { &link.whole } else { &link.own };
-        let [mut force, mut moment] = of.wrench(moving, turning);
-        let mut about_axis = moment.z();
+        let mut sum = of.wrench(&motion);
+        let mut about_axis = sum.moment.z();
         for &c in link.next.iter().filter(|_| !is_one) {
-            let Some([f, m]) = self.wrench(c, k, [moving, turning], on) else {
+            let Some(own) = self.wrench(c, k, &motion, on) else {
                 continue;
             };
-            let lever = self.links[c].at.cross(f);
-            force = force + f;
-            moment = moment + m + lever;
+            let lever = self.links[c].at.cross(own.force);
+            sum = sum.plus(&own);
+            sum.moment = sum.moment + lever;
             about_axis = about_axis + lever.z();
             if self.state.rates.run[c].is_none() {
-                about_axis = about_axis + m.z();
+                about_axis = about_axis + own.moment.z();
             }
         }
         on[j] = OnJoint {
             moment: about_axis,
-            force: force.z(),
+            force: sum.force.z(),
         };
-        self.name_wrench([force, moment], j, k);
-        Some([link.turn.back(force), link.turn.back(moment)])
+        self.name_wrench(&sum, j, k);
+        Some(link.turn.back_wrench(&sum))
     }
 
-    fn name_wrench(&self, [force, moment]: [Vector3<'a>; 2], j: usize, k: usize) {
+    fn name_wrench(&self, wrench: &Wrench<'a>, j: usize, k: usize) {
         let of = self.leg.independent().nth(k).unwrap_or(k);
         let by = &self.leg.joints[of].name;
         let body = &self.leg.joints[j].name;
         let mut names = Names::default();
         let place = joined(&["by", by, &self.leg.name]);
-        names.vector(force, &format!("force{body}"), &place);
-        names.vector(moment, &format!("moment{body}"), &place);
+        names.vector(wrench.force, &format!("force{body}"), &place);
+        names.vector(wrench.moment, &format!("moment{body}"), &place);
         names.give();
     }
 

@@ -5,7 +5,7 @@
 //! of the leg follows by the addition theorem.
 
 use super::motion_input::MotionInput;
-use crate::cas::{Arena, Direction, Expr, Number, Ratio, SymbolId};
+use crate::cas::{Arena, CosineSine, Direction, Expr, Ratio, SymbolId};
 use crate::mechanism::{Home, Mechanism};
 use std::cell::RefCell;
 
@@ -13,9 +13,6 @@ use std::cell::RefCell;
 const JOINTS: &str = "joints";
 /// The input array of the platform's coordinates, or of the joints of a skeleton.
 const POSE: &str = "pose";
-
-/// Cosine and sine of an angle.
-pub type Unit<'a> = (Expr<'a>, Expr<'a>);
 
 /// The configuration of a robot as expressions.
 #[derive(Debug, Clone)]
@@ -25,7 +22,7 @@ pub struct Configuration<'a> {
     /// What was asked for without being known, if that has symbols instead of no value.
     unknowns: Option<RefCell<Vec<Unknown>>>,
     /// Angles whose sine and cosine are known from the closure.
-    known: Vec<(Direction, Unit<'a>)>,
+    known: Vec<(Direction, CosineSine<'a>)>,
     /// Positions of prismatic joints known from the closure, by joint index in q_t.
     positions: Vec<(usize, Expr<'a>)>,
     /// For every joint of q_t: its leg's name and its own name.
@@ -88,6 +85,11 @@ impl<'a> Configuration<'a> {
             .iter()
             .map(|&(_, is_positive)| is_positive)
             .collect()
+    }
+
+    /// The arena of its expressions.
+    pub(super) const fn arena(&self) -> &'a Arena {
+        self.arena
     }
 
     /// What the configuration is given by.
@@ -162,7 +164,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// Declares the sine and cosine of an angle.
-    pub(crate) fn learn(&mut self, angle: Direction, unit: Unit<'a>) {
+    pub(crate) fn learn(&mut self, angle: Direction, unit: CosineSine<'a>) {
         self.name(&angle, unit);
         self.known.push((angle, unit));
     }
@@ -177,7 +179,7 @@ impl<'a> Configuration<'a> {
 
     /// Cosine and sine of an angle; `None` if they do not follow from what is known.
     #[must_use]
-    pub fn unit(&self, angle: &Direction) -> Option<Unit<'a>> {
+    pub fn unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let unit = match self.from {
             MotionInput::Joints => self.arena.cosine_and_sine(angle),
             _ if self.is_input(angle) => self.arena.cosine_and_sine(angle),
@@ -191,7 +193,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// Cosine and sine of an angle whose variable part is not known.
-    fn unknown_unit(&self, angle: &Direction) -> Option<Unit<'a>> {
+    fn unknown_unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let is_negative = angle.terms()[0].1.value() < 0.0;
         let turn = if is_negative {
             angle.negative()
@@ -202,8 +204,8 @@ impl<'a> Configuration<'a> {
             .arena
             .cosine_and_sine(&Direction::constant(turn.offset()));
         let unknown = self.ask(Unknown::Turn(turn.without_offset()))?;
-        let (cosine, sine) = add_angles(unknown.unit(self.arena), offset);
-        Some((cosine, if is_negative { -sine } else { sine }))
+        let unit = unknown.unit(self.arena).plus(offset);
+        Some(if is_negative { unit.negated() } else { unit })
     }
 
     /// The joint of q_t that a symbol is the position of.
@@ -228,12 +230,12 @@ impl<'a> Configuration<'a> {
     }
 
     /// The angle as a known one plus or minus another, plus one that holds no joint.
-    fn composed(&self, angle: &Direction) -> Option<Unit<'a>> {
+    fn composed(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let rest = |known: &Direction, sign: i64| {
             let part = known.times(Ratio::integer(sign))?;
             angle.plus(&part.negative())
         };
-        let turned = |unit: Unit<'a>, sign: i64| if sign < 0 { (unit.0, -unit.1) } else { unit };
+        let turned = |unit: CosineSine<'a>, sign: i64| if sign < 0 { unit.negated() } else { unit };
         for (known, unit) in &self.known {
             for sign in [1, -1] {
                 let Some(rest) = rest(known, sign) else {
@@ -241,7 +243,7 @@ impl<'a> Configuration<'a> {
                 };
                 if self.is_input(&rest) {
                     let input = self.arena.cosine_and_sine(&rest);
-                    return Some(add_angles(turned(*unit, sign), input));
+                    return Some(turned(*unit, sign).plus(input));
                 }
             }
         }
@@ -257,8 +259,8 @@ impl<'a> Configuration<'a> {
                             continue;
                         };
                         if self.is_input(&last) {
-                            let sum = add_angles(turned(*unit, sign), turned(*other, other_sign));
-                            return Some(add_angles(sum, self.arena.cosine_and_sine(&last)));
+                            let sum = turned(*unit, sign).plus(turned(*other, other_sign));
+                            return Some(sum.plus(self.arena.cosine_and_sine(&last)));
                         }
                     }
                 }
@@ -268,7 +270,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// Names sine and cosine after the joints of the angle: `c12_leg1`.
-    fn name(&self, angle: &Direction, unit: Unit<'a>) {
+    fn name(&self, angle: &Direction, unit: CosineSine<'a>) {
         let mut leg: Option<&str> = None;
         let mut label = String::new();
         for (symbol, factor) in angle.terms() {
@@ -296,9 +298,12 @@ impl<'a> Configuration<'a> {
         // What is named is the joints' own angle: right angles are turned back, others are told apart.
         let (co, so) = angle.offset().cosine_and_sine();
         let is_right = co.is_zero() || so.is_zero();
-        let (mut cosine, mut sine) = unit;
+        let CosineSine {
+            mut cosine,
+            mut sine,
+        } = unit;
         if is_right {
-            (cosine, sine) = (unit.0 * co + unit.1 * so, unit.1 * co - unit.0 * so);
+            (cosine, sine) = (cosine * co + sine * so, sine * co - cosine * so);
         } else {
             label += "o";
         }
@@ -320,9 +325,12 @@ pub enum Unknown {
 impl Unknown {
     /// The symbols of an unknown turn's cosine and sine.
     #[must_use]
-    pub fn unit<'a>(&self, arena: &'a Arena) -> Unit<'a> {
+    pub fn unit<'a>(&self, arena: &'a Arena) -> CosineSine<'a> {
         let symbol = |of: &str| arena.placeholder(&format!("{of} of unknown {self:?}"));
-        (symbol("cosine"), symbol("sine"))
+        CosineSine {
+            cosine: symbol("cosine"),
+            sine: symbol("sine"),
+        }
     }
 
     /// The symbol of an unknown slide.
@@ -330,18 +338,4 @@ impl Unknown {
     pub fn slide<'a>(&self, arena: &'a Arena) -> Expr<'a> {
         arena.placeholder(&format!("unknown {self:?}"))
     }
-}
-
-/// Cosine and sine of a sum of two angles.
-#[must_use]
-pub(crate) fn add_angles<'a>((ca, sa): Unit<'a>, (cb, sb): Unit<'a>) -> Unit<'a> {
-    (ca * cb - sa * sb, sa * cb + ca * sb)
-}
-
-/// The angle of a direction, within half a turn of its value at home.
-#[must_use]
-pub(crate) fn angle_near<'a>(arena: &'a Arena, (cosine, sine): Unit<'a>, home: f64) -> Expr<'a> {
-    let [ch, sh] = [home.cos(), home.sin()].map(Number::float);
-    let turned = (sine * ch - cosine * sh).atan2(cosine * ch + sine * sh);
-    turned + arena.number(Number::float(home))
 }

@@ -12,11 +12,13 @@
 //! The sign of t is the assembly mode of the home configuration. A `point` or `translation` platform
 //! is solved by one meeting; a `planar` one by two, where two pairs of legs hold it at two points.
 
-use super::configuration::{Configuration, Unknown, angle_near};
+use super::configuration::{Configuration, Unknown};
 use super::inverse_kinematics::{Reach, Task, advance, at_zero, equations};
 use super::motion_input::MotionInput;
 use super::platform::PlatformPose;
-use crate::cas::{Arena, Expr, Matrix3, Number, Ratio, Substitution, SymbolId, Vector3};
+use crate::cas::{
+    Arena, CosineSine, Expr, Matrix3, Number, Ratio, Substitution, SymbolId, Vector3,
+};
 use crate::mechanism::numeric::platform_frame;
 use crate::mechanism::{End, JointKind, Mechanism, Motion, TwistCoordinate};
 
@@ -152,7 +154,7 @@ impl<'a> Work<'a> {
     fn without_turns(self, equation: Expr<'a>, unknowns: &[Unknown]) -> Expr<'a> {
         let turns = unknowns.iter().filter(|u| matches!(u, Unknown::Turn(_)));
         turns.fold(equation, |equation, turn| {
-            let (cosine, sine) = turn.unit(self.arena);
+            let CosineSine { cosine, sine } = turn.unit(self.arena);
             let symbols: Vec<SymbolId> = [cosine, sine].iter().flat_map(|e| e.symbols()).collect();
             let [c, s] = symbols[..] else {
                 return equation;
@@ -229,19 +231,21 @@ impl<'a> Work<'a> {
                 None => points.push((own, vec![leg])),
             }
         }
-        let mut meetings = points.iter().filter_map(|(at, legs)| {
+        let mut located = points.iter().filter_map(|(at, legs)| {
             let along_normal = |leg: usize| {
                 let mut arm = [Number::ZERO; 3];
                 arm[normal] = self.end_point(leg)?[normal];
                 Some((Vector3::constant(self.arena, arm), None))
             };
             let spheres = self.spheres(legs, along_normal);
-            Some((*at, self.best_meeting(&spheres, self.home_point(*at))?))
+            Some(LocatedPoint {
+                at: *at,
+                meeting: self.best_meeting(&spheres, self.home_point(*at))?,
+            })
         });
-        let (first, second) = (meetings.next()?, meetings.next()?);
-        let pose =
-            self.pose_through((first.0, first.1.point), (second.0, second.1.point), normal)?;
-        Some(self.result(pose, &[&first.1, &second.1]))
+        let (first, second) = (located.next()?, located.next()?);
+        let pose = self.pose_through(&first, &second, normal)?;
+        Some(self.result(pose, &[&first.meeting, &second.meeting]))
     }
 
     /// The platform point that a leg ends at, in the platform frame.
@@ -327,10 +331,12 @@ impl<'a> Work<'a> {
     /// The planar pose that takes two platform points to two places.
     fn pose_through(
         self,
-        (at1, p1): ([Number; 3], Vector3<'a>),
-        (at2, p2): ([Number; 3], Vector3<'a>),
+        first: &LocatedPoint<'a>,
+        second: &LocatedPoint<'a>,
         normal: usize,
     ) -> Option<Vec<Expr<'a>>> {
+        let (at1, p1) = (first.at, first.meeting.point);
+        let (at2, p2) = (second.at, second.meeting.point);
         let arena = self.arena;
         let plane = [(normal + 1) % 3, (normal + 2) % 3];
         let local = plane.map(|i| arena.number(at2[i] - at1[i]));
@@ -347,7 +353,7 @@ impl<'a> Work<'a> {
             middle[1] - (sine * x + cosine * y),
         ];
         let home = *self.mechanism.home.pose.last()?;
-        let angle = angle_near(arena, (cosine, sine), home);
+        let angle = CosineSine { cosine, sine }.angle_near(arena, home);
         Some(vec![origin[0], origin[1], angle])
     }
 
@@ -369,6 +375,14 @@ struct Meeting<'a> {
     point: Vector3<'a>,
     radicand: Expr<'a>,
     legs: Vec<usize>,
+}
+
+/// A platform point whose position is known.
+struct LocatedPoint<'a> {
+    /// The point in the platform frame.
+    at: [Number; 3],
+    /// Its position: where spheres about the legs' joints meet.
+    meeting: Meeting<'a>,
 }
 
 /// All choices of `count` of the numbers below `all`, in lexicographic order.

@@ -130,15 +130,21 @@ pub(super) fn joint_columns<'a>(
     arena: &'a Arena,
     leg: &Leg,
     frames: &LegFrames<'a>,
-) -> Vec<[Vector3<'a>; 2]> {
+) -> Vec<SpatialMotion<'a>> {
     let zero = Vector3::zero(arena);
-    let mut columns = vec![[zero; 2]; leg.joints.len()];
+    let mut columns = vec![SpatialMotion::zero(arena); leg.joints.len()];
     for index in path_to_end(leg) {
         let axis = frames.frames[index].axis();
         columns[index] = match leg.joints[index].kind {
-            JointKind::Revolute => [axis.cross(frames.to_end(arena, leg, index)), axis],
-            JointKind::Prismatic => [axis, zero],
-            JointKind::Fixed => [zero; 2],
+            JointKind::Revolute => SpatialMotion {
+                linear: axis.cross(frames.to_end(arena, leg, index)),
+                angular: axis,
+            },
+            JointKind::Prismatic => SpatialMotion {
+                linear: axis,
+                angular: zero,
+            },
+            JointKind::Fixed => SpatialMotion::zero(arena),
         };
     }
     columns
@@ -149,17 +155,16 @@ pub(super) fn independent_columns<'a>(
     arena: &'a Arena,
     leg: &Leg,
     frames: &LegFrames<'a>,
-) -> Vec<[Vector3<'a>; 2]> {
+) -> Vec<SpatialMotion<'a>> {
     let joint_columns = joint_columns(arena, leg, frames);
     leg.independent()
         .map(|own| {
-            let mut sum = [Vector3::zero(arena); 2];
+            let mut sum = SpatialMotion::zero(arena);
             for (joint, columns) in leg.joints.iter().zip(&joint_columns) {
                 for (of, factor) in &joint.variable {
                     if *of == own {
                         let factor = arena.number(Number::ratio(*factor));
-                        sum[0] = sum[0] + columns[0].scaled(factor);
-                        sum[1] = sum[1] + columns[1].scaled(factor);
+                        sum = sum.plus_scaled(columns, factor);
                     }
                 }
             }

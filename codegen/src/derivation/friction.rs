@@ -10,12 +10,13 @@
 use super::robot::Robot;
 use crate::cas::{Arena, Expr, Number, Ratio};
 use crate::description::StandardParameter;
+use crate::mechanism::JointIndex;
 
 impl<'a> Robot<'a> {
     /// The friction at a rate per unit of a joint's parameter; none of a parameter that is no friction.
     pub(super) fn friction_force(
         &self,
-        (leg, joint): (usize, usize),
+        at: JointIndex,
         symbol: StandardParameter,
         rate: impl Fn() -> Expr<'a>,
     ) -> Option<Expr<'a>> {
@@ -29,13 +30,13 @@ impl<'a> Robot<'a> {
             P::FsPos => (rate().sign() + one()) * half(),
             P::FsNeg => (rate().sign() - one()) * half(),
             P::Fst => {
-                let velocity = self.mechanism.legs[leg].joints[joint].stribeck;
+                let velocity = self.mechanism.joint(at).stribeck;
                 velocity.map_or_else(
                     || self.arena.zero(),
                     |velocity| stribeck(self.arena, rate(), velocity),
                 )
             }
-            P::Fl => rate().sign() * magnitude(self.load(leg, joint)),
+            P::Fl => rate().sign() * magnitude(self.load(at)),
             _ => return None,
         })
     }

@@ -3,6 +3,7 @@
 use super::divisors;
 use super::elimination::Rows;
 use super::forward_kinematics::closed_form;
+use super::function_form::FunctionForm;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
 use super::selection::{JointsBy, Selection};
@@ -60,7 +61,8 @@ pub fn derive<'a>(
     let derived = if function == Function::PoseInClosedForm {
         pose_in_closed_form(arena, mechanism)?
     } else {
-        on_sheet(arena, mechanism, selection, (function, from), |sheet| {
+        let form = FunctionForm { function, from };
+        on_sheet(arena, mechanism, selection, form, |sheet| {
             sheet.rows(function)
         })?
     };
@@ -94,9 +96,10 @@ pub(super) fn on_sheet<'a, 's>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &'s Selection,
-    (function, from): (Function, MotionInput),
+    form: FunctionForm,
     rows: impl FnOnce(&mut Sheet<'a, 's>) -> Result<Rows<'a>, Underivable>,
 ) -> Result<Derived<'a>, Underivable> {
+    let FunctionForm { function, from } = form;
     // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
     let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
     let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);

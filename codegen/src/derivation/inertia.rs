@@ -163,12 +163,13 @@ impl<'a> Inertia<'a> {
         })
     }
 
-    /// Force and moment about the origin for accelerations of the origin and of the turn, from rest.
-    pub(super) fn wrench(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> [Vector3<'a>; 2] {
-        [
-            linear.scaled(self.mass) + angular.cross(self.first),
-            self.second * angular + self.first.cross(linear),
-        ]
+    /// Wrench about the origin that accelerates the body from rest.
+    pub(super) fn wrench(&self, acceleration: &SpatialMotion<'a>) -> Wrench<'a> {
+        let SpatialMotion { linear, angular } = *acceleration;
+        Wrench {
+            force: linear.scaled(self.mass) + angular.cross(self.first),
+            moment: self.second * angular + self.first.cross(linear),
+        }
     }
 
     /// Names what is no parameter itself: `mass2_leg1`, `first2_x_leg1`, `inertia2_xy_leg1`.

@@ -1,15 +1,16 @@
 //! Which functions a robot has, what each is evaluated from, and what it is then called.
 
 use super::forward_kinematics::closed_form;
+use super::function_form::FunctionForm;
 use super::motion_input::MotionInput;
 use super::selection::JointsBy;
 use crate::cas::Arena;
 use crate::mechanism::Mechanism;
 use overact_core::{Condition, Function};
 
-/// All functions of a robot with what they are evaluated from.
+/// All functions of a robot, in all forms.
 #[must_use]
-pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, MotionInput)> {
+pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<FunctionForm> {
     let tree = mechanism.is_tree();
     let payload = mechanism
         .platform
@@ -29,7 +30,7 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, Moti
     let with = |function| {
         sources(function, tree)
             .iter()
-            .map(move |&from| (function, from))
+            .map(move |&from| FunctionForm { function, from })
     };
     Function::ALL
         .into_iter()
@@ -97,7 +98,7 @@ mod tests {
             .into_iter()
             .filter(|f| f.condition() == condition);
         let found: Vec<bool> = wanted
-            .map(|wanted| offered.iter().any(|(function, _)| *function == wanted))
+            .map(|wanted| offered.iter().any(|form| form.function == wanted))
             .collect();
         assert!(!found.is_empty() && found.iter().all(|one| *one == found[0]));
         found[0]

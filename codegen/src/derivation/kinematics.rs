@@ -1,7 +1,6 @@
 //! Kinematics of the whole robot on a sheet: positions and rates of joints, and what follows from the
 //! actuators by least squares.
 
-use super::configuration::angle_near;
 use super::elimination::Rows;
 use super::motion_input::MotionInput;
 use super::names::coordinate_label;
@@ -70,7 +69,7 @@ impl<'a> Sheet<'a, '_> {
             }
             let home = mechanism.home.joints[index];
             match configuration.unit(&configuration.joint_angle(index)) {
-                Some(unit) => angle_near(arena, unit, home),
+                Some(unit) => unit.angle_near(arena, home),
                 None => arena.zero(),
             }
         };

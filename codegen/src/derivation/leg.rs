@@ -69,8 +69,10 @@ impl<'a> LegState<'a> {
         let mut terms = end_bias(arena, leg, &self.frames, &self.rates, u);
         terms.extend(self.ground.map(|[_, ground]| BiasTerm {
             scalar: arena.one(),
-            linear: ground,
-            angular: Vector3::zero(arena),
+            acceleration: SpatialMotion {
+                linear: ground,
+                angular: Vector3::zero(arena),
+            },
         }));
         terms
     }

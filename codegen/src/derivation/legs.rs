@@ -2,7 +2,7 @@
 //! is seen, and the closure itself.
 
 use super::centres::centres;
-use super::closure::{LegClosure, split_rows};
+use super::closure::{ClosureRows, LegClosure, split_rows};
 use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
@@ -166,13 +166,15 @@ impl<'a> Robot<'a> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         let home = |e: Expr<'a>| self.at_home(e);
-        let [selected, over] = if mechanism.is_parasitic() {
+        let rows = if mechanism.is_parasitic() {
             split_rows(arena, leg, frames, rates, &home)
         } else {
-            [mechanism.closure_rows(index), Vec::new()]
+            ClosureRows {
+                independent: mechanism.closure_rows(index),
+                remaining: Vec::new(),
+            }
         };
-        let rows = [&selected[..], &over[..]];
-        let closure = LegClosure::new(arena, leg, frames, rates, platform, rows, &home);
+        let closure = LegClosure::new(arena, leg, frames, rates, platform, &rows, &home);
         closure.ok_or_else(|| Underivable::SingularLeg {
             leg: leg.name.clone(),
         })

@@ -1,6 +1,6 @@
 //! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
 
-use super::blocked::missed;
+use super::blocked::placement_error;
 use super::elimination::{Rows, inverse};
 use super::frames::independent_columns;
 use super::sheet::{Sheet, column};
@@ -40,7 +40,7 @@ impl<'a> Sheet<'a, '_> {
         let frames = self.robot.base_frames(index)?;
         let columns = independent_columns(arena, &mechanism.legs[index], &frames);
         let rows = mechanism.closure_rows(index).into_iter();
-        let entry = |row: usize| columns.iter().map(|c| c[row / 3].0[row % 3]).collect();
+        let entry = |row: usize| columns.iter().map(|c| c.component(row)).collect();
         let matrix: Rows<'a> = rows.map(entry).collect();
         let home = |value: Expr<'a>| self.robot.at_home(value);
         Some(inverse(&matrix, &home)?.determinant)
@@ -64,12 +64,12 @@ impl<'a> Sheet<'a, '_> {
             };
             let frames = self.robot.base_frames(index);
             let arm = platform.arm(closure.at);
-            let found = frames.and_then(|frames| missed(&platform, arm, leg, &frames));
-            let Some((position, turn)) = found else {
+            let error = frames.and_then(|frames| placement_error(&platform, arm, leg, &frames));
+            let Some(error) = error else {
                 continue;
             };
             let rows = mechanism.closure_rows(index).into_iter();
-            errors.extend(rows.map(|row| [position, turn][row / 3].0[row % 3]));
+            errors.extend(rows.map(|row| error.component(row)));
         }
         column(errors)
     }
@@ -114,7 +114,7 @@ impl<'a> Sheet<'a, '_> {
             for row in mechanism.closure_rows(index) {
                 let mut entries = vec![arena.zero(); total];
                 for (k, column) in columns.iter().enumerate() {
-                    entries[state.first_joint + k] = column[row / 3].0[row % 3];
+                    entries[state.first_joint + k] = column.component(row);
                 }
                 legs.push(entries);
                 let own = end.row(closure.at, row);

@@ -9,7 +9,8 @@ use super::leg::LegState;
 use super::motion::Moved;
 use super::names::{AXES, Names, coordinate_label, joined};
 use super::robot::Robot;
-use crate::cas::{Expr, Vector3};
+use super::spatial::Wrench;
+use crate::cas::Expr;
 use crate::mechanism::Leg;
 
 impl<'a> Robot<'a> {
@@ -74,10 +75,10 @@ impl<'a> Robot<'a> {
     }
 
     /// Names a body's force and moment.
-    pub(super) fn name_wrench(&self, [force, moment]: [Vector3<'a>; 2], body: &str, place: &str) {
+    pub(super) fn name_wrench(&self, wrench: &Wrench<'a>, body: &str, place: &str) {
         let mut names = Names::default();
-        names.vector(force, &format!("force{body}"), place);
-        names.vector(moment, &format!("moment{body}"), place);
+        names.vector(wrench.force, &format!("force{body}"), place);
+        names.vector(wrench.moment, &format!("moment{body}"), place);
         names.give();
     }
 
@@ -131,10 +132,10 @@ impl<'a> Robot<'a> {
                         names.one(*entry, joined(&[&what, &leg.name]));
                     }
                 }
-                for (of_u, [linear, angular]) in leg.independent().zip(&body.partials) {
+                for (of_u, partial) in leg.independent().zip(&body.partials) {
                     let by = &leg.joints[of_u].name;
-                    names.vector(*linear, &format!("{}_by_{by}", of("v")), &leg.name);
-                    names.vector(*angular, &format!("{}_by_{by}", of("w")), &leg.name);
+                    names.vector(partial.linear, &format!("{}_by_{by}", of("v")), &leg.name);
+                    names.vector(partial.angular, &format!("{}_by_{by}", of("w")), &leg.name);
                 }
             }
         }
@@ -174,8 +175,8 @@ fn name_wrenches<'a>(names: &mut Names<'a>, leg: &Leg, closure: &LegClosure<'a>)
         names.one(positive(wrench.factor), joined(&[&factor, &leg.name]));
         names.vector(*force, &format!("f{label}"), &leg.name);
         names.vector(*moment, &format!("n{label}"), &leg.name);
-        names.vector(wrench.force, &format!("fk{label}"), &leg.name);
-        names.vector(wrench.moment, &format!("nk{label}"), &leg.name);
+        names.vector(wrench.wrench.force, &format!("fk{label}"), &leg.name);
+        names.vector(wrench.wrench.moment, &format!("nk{label}"), &leg.name);
     }
     for determinant in &closure.determinants {
         names.one(determinant.factor_and_base().1, joined(&["det", &leg.name]));

@@ -19,7 +19,7 @@ use super::regressor::add;
 use super::robot::Robot;
 use super::tree_masses::{on_carrier, wrench_on_carrier};
 use crate::cas::{Arena, Expr, Number, Vector3};
-use crate::mechanism::{End, JointKind, Leg};
+use crate::mechanism::{End, JointIndex, JointKind, Leg};
 
 impl<'a> Robot<'a> {
     /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
@@ -67,7 +67,7 @@ impl<'a> Robot<'a> {
         if let Some(body) = &motion.platform {
             let whole = with(&hung.on_platform, &self.platform_inertia(values));
             let wrench = body.wrench(&whole);
-            self.name_wrench(wrench, "", "platform");
+            self.name_wrench(&wrench, "", "platform");
             let on_twist = body.project(&self.free, wrench);
             for (coordinate, force) in self.free.iter().zip(&on_twist) {
                 let what = format!("force_on_{}_platform", coordinate_label(coordinate));
@@ -126,40 +126,43 @@ impl<'a> Robot<'a> {
         }
         let kept = chain.group(&mut bodies, leg.base_body.is_some());
         let count = leg.joints.len();
-        let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
+        let mut wrenches: Vec<Wrench<'a>> = Vec::new();
         let mut about_axes = Vec::new();
         for (joint, body) in bodies.iter().enumerate() {
             let own = motion.bodies[index][joint].wrench(body);
             let carried = hung.wrenches[index][joint];
-            let wrench = [own[0] + carried[0], own[1] + carried[1]];
-            about_axes.push(wrench[1].z());
+            let wrench = own.plus(&carried);
+            about_axes.push(wrench.moment.z());
             wrenches.push(wrench);
         }
-        let mut at_base = [Vector3::zero(arena); 2];
+        let mut at_base = Wrench::zero(arena);
         let mut forces = vec![arena.zero(); leg.independent().count()];
         for j in (0..count).rev() {
             let joint = &leg.joints[j];
             let wrench = wrenches[j];
-            self.name_wrench(wrench, &joint.name, &leg.name);
+            self.name_wrench(&wrench, &joint.name, &leg.name);
             if let Some(before) = joint.antecedent {
-                let [force, moment, lever] = chain.handed_down(j, wrench);
-                about_axes[before] = about_axes[before] + lever.z();
+                let onto = chain.on_antecedent(j, &wrench);
+                about_axes[before] = about_axes[before] + onto.lever_moment.z();
                 if state.rates.run[j].is_none() {
-                    about_axes[before] = about_axes[before] + moment.z();
+                    about_axes[before] = about_axes[before] + onto.at_joint.moment.z();
                 }
-                let sum = &mut wrenches[before];
-                *sum = [sum[0] + force, sum[1] + (moment + lever)];
+                wrenches[before] = wrenches[before].plus(&onto.at_antecedent());
             } else if leg.base_body.is_some() {
-                let [force, moment, lever] = chain.handed_down(j, wrench);
-                at_base = [at_base[0] + force, at_base[1] + (moment + lever)];
+                let onto = chain.on_antecedent(j, &wrench);
+                at_base = at_base.plus(&onto.at_antecedent());
             }
+            let at = JointIndex {
+                leg: index,
+                joint: j,
+            };
             let on_joint = values.iter().filter_map(|(p, value)| {
                 let symbol = p.of_joint(index, j).filter(|s| !s.is_inertial())?;
-                Some(self.joint_force(motion, index, j, symbol) * *value)
+                Some(self.joint_force(motion, at, symbol) * *value)
             });
-            let mut on_joint = on_joint.fold(self.known_force(index, j), |sum, force| sum + force);
+            let mut on_joint = on_joint.fold(self.known_force(at), |sum, force| sum + force);
             if joint.kind == JointKind::Prismatic {
-                on_joint = on_joint + wrench[0].z();
+                on_joint = on_joint + wrench.force.z();
             }
             let on_joint = on_joint.named(&joined(&["tau", &joint.name, &leg.name]));
             let (rate, turning) = (&state.rates.joint[j], &state.rates.turning[j]);
@@ -168,7 +171,7 @@ impl<'a> Robot<'a> {
             let shares = (0..forces.len()).map(share).collect();
             add(&mut forces, shares);
         }
-        hung.hand_on(arena, leg, &kept, at_base);
+        hung.hand_on(arena, leg, &kept, &at_base);
         Some(forces)
     }
 }
@@ -178,14 +181,14 @@ struct Hung<'a> {
     /// Of every leg, for its bodies, what the joints of carried legs leave as it is.
     inertias: Vec<Vec<Option<Inertia<'a>>>>,
     /// And the wrenches that carried legs put on them.
-    wrenches: Vec<Vec<[Vector3<'a>; 2]>>,
+    wrenches: Vec<Vec<Wrench<'a>>>,
     /// What the platform has of the ends of legs.
     on_platform: Inertia<'a>,
 }
 
 impl<'a> Hung<'a> {
     fn nothing(arena: &'a Arena, legs: &[Leg]) -> Self {
-        let still = [Vector3::zero(arena); 2];
+        let still = Wrench::zero(arena);
         let counts = || legs.iter().map(|leg| leg.joints.len());
         Self {
             inertias: counts().map(|count| vec![None; count]).collect(),
@@ -215,20 +218,14 @@ impl<'a> Hung<'a> {
     }
 
     /// Puts what a leg's first joints leave as it is, and the wrench at its base, on the body that it stands on.
-    fn hand_on(
-        &mut self,
-        arena: &'a Arena,
-        leg: &Leg,
-        kept: &Inertia<'a>,
-        at_base: [Vector3<'a>; 2],
-    ) {
+    fn hand_on(&mut self, arena: &'a Arena, leg: &Leg, kept: &Inertia<'a>, at_base: &Wrench<'a>) {
         let Some(carrier) = leg.base_body else { return };
         let kept = on_carrier(arena, leg, kept);
         let onto = &mut self.inertias[carrier.leg][carrier.joint];
         *onto = Some(onto.map_or(kept, |onto| with(&kept, &onto)));
-        let [force, moment] = wrench_on_carrier(arena, leg, at_base);
+        let wrench = wrench_on_carrier(arena, leg, at_base);
         let sum = &mut self.wrenches[carrier.leg][carrier.joint];
-        *sum = [sum[0] + force, sum[1] + moment];
+        *sum = sum.plus(&wrench);
     }
 }
 
@@ -239,10 +236,13 @@ fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
 
 impl<'a> BodyMotion<'a> {
     /// Force and moment about the frame's origin that an inertia needs for the motion.
-    fn wrench(&self, body: &Inertia<'a>) -> [Vector3<'a>; 2] {
+    fn wrench(&self, body: &Inertia<'a>) -> Wrench<'a> {
         let force = self.acceleration.scaled(body.mass) + self.u_matrix * body.first;
         let moment = body.turning_moment(self.omega, self.alpha);
-        [force, moment + body.first.cross(self.acceleration)]
+        Wrench {
+            force,
+            moment: moment + body.first.cross(self.acceleration),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::configuration::Configuration;
 use super::joint::joint_turn;
 use super::motion_input::MotionInput;
 use super::rates::parallel;
-use crate::cas::{Angle, Arena, Direction, Matrix3, Ratio};
+use crate::cas::{Angle, Arena, CosineSine, Direction, Matrix3, Ratio};
 use crate::mechanism::{Leg, Mechanism};
 
 mod right;
@@ -189,10 +189,11 @@ pub(super) fn keep_rows<'a>(
     configuration: &Configuration<'a>,
     axes: &[Orientation],
 ) -> bool {
-    let rows = match mechanism.is_parasitic() {
-        // Which of the shared ones determine the joints is chosen in the axes themselves.
-        true => mechanism.legs[leg].shared_components(),
-        false => mechanism.closure_rows(leg),
+    let rows = if mechanism.is_parasitic() {
+        // Which of the shared components determine the joints is chosen in the axes themselves.
+        mechanism.legs[leg].shared_components()
+    } else {
+        mechanism.closure_rows(leg)
     };
     let parts = [0, 1].map(|part| {
         let own = rows.iter().filter(|&&row| row / 3 == part);
@@ -217,7 +218,7 @@ impl Part {
         match self {
             Self::Tilt(angles) => Some(constant_rotation(arena, *angles)),
             Self::Turn(turn) => {
-                let (cosine, sine) = configuration.unit(turn)?;
+                let CosineSine { cosine, sine } = configuration.unit(turn)?;
                 Some(Matrix3::rotation(2, cosine, sine))
             }
         }

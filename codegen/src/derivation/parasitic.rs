@@ -8,10 +8,27 @@
 use super::constant_columns::Solved;
 use super::elimination::Rows;
 use super::linear::{apply, transposed};
+use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Expr, Vector3};
 
 /// Components of a free body's velocity.
 pub(super) const SIX: usize = 6;
+
+/// A row of A: a constraint that a leg imposes on the platform's velocity.
+#[derive(Debug, Clone)]
+pub(super) struct BlockedRow<'a> {
+    /// The leg.
+    pub(super) leg: usize,
+    /// The number of the constraint among those of the leg.
+    pub(super) index: usize,
+    /// The row, per component of t.
+    pub(super) entries: Vec<Expr<'a>>,
+}
+
+/// The components of a free body's velocity that are not independent.
+pub(super) fn dependent_components(independent: &[usize]) -> Vec<usize> {
+    (0..SIX).filter(|at| !independent.contains(at)).collect()
+}
 
 /// How the velocity of a platform that moves aside follows from its independent coordinates.
 #[derive(Debug)]
@@ -20,8 +37,8 @@ pub struct Aside<'a> {
     independent: Vec<usize>,
     /// The others.
     pub(super) dependent: Vec<usize>,
-    /// The rows of A: the leg, and which of those that it leaves over.
-    pub(super) rows: Vec<(usize, usize)>,
+    /// The rows of A.
+    pub(super) rows: Vec<BlockedRow<'a>>,
     /// A, per component of t.
     pub(super) matrix: Rows<'a>,
     /// A_d.
@@ -31,15 +48,16 @@ pub struct Aside<'a> {
 }
 
 impl<'a> Aside<'a> {
-    /// Solves rows of A, as many as there are dependent coordinates, each with its leg and number there; also
-    /// what was divided by. `home` gives an expression's value at home. `None` for rows that do not determine
-    /// the dependent coordinates.
+    /// Solves rows of A, as many as there are dependent coordinates. `independent` are the components of t that are
+    /// independent; `home` evaluates an expression at the home configuration. `None` if the rows do not determine the
+    /// dependent components.
     pub(super) fn new(
-        [independent, dependent]: [Vec<usize>; 2],
-        rows: Vec<((usize, usize), Vec<Expr<'a>>)>,
+        independent: Vec<usize>,
+        rows: Vec<BlockedRow<'a>>,
         home: &dyn Fn(Expr<'a>) -> f64,
-    ) -> Option<(Self, Vec<Expr<'a>>)> {
-        let (rows, matrix): (Vec<_>, Rows<'a>) = rows.into_iter().unzip();
+    ) -> Option<Self> {
+        let dependent = dependent_components(&independent);
+        let matrix: Rows<'a> = rows.iter().map(|row| row.entries.clone()).collect();
         if rows.len() < dependent.len() {
             return None;
         }
@@ -49,21 +67,19 @@ impl<'a> Aside<'a> {
         };
         let (own, others) = (part(&independent), part(&dependent));
         let solved = Solved::new(&others, home)?;
-        let determinants = solved.determinants.clone();
         let column = |column: &Vec<Expr<'a>>| -> Vec<Expr<'a>> {
             let found = solved.solve(column).into_iter();
             found.map(|entry| -entry).collect()
         };
         let follow = transposed(&transposed(&own).iter().map(column).collect());
-        let aside = Self {
+        Some(Self {
             independent,
             dependent,
             rows,
             matrix,
             solved,
             follow,
-        };
-        Some((aside, determinants))
+        })
     }
 
     /// t of the independent velocities.
@@ -93,13 +109,17 @@ impl<'a> Aside<'a> {
     }
 
     /// The columns of D: velocity of the platform's origin and angular velocity per independent rate.
-    pub(super) fn partials(&self, arena: &'a Arena) -> Vec<[Vector3<'a>; 2]> {
+    pub(super) fn partials(&self, arena: &'a Arena) -> Vec<SpatialMotion<'a>> {
         let rows = self.platform_jacobian(arena);
         let part = |column: usize, first: usize| {
             Vector3(std::array::from_fn(|axis| rows[first + axis][column]))
         };
         let columns = 0..self.independent.len();
-        columns.map(|c| [part(c, 0), part(c, 3)]).collect()
+        let column = |c: usize| SpatialMotion {
+            linear: part(c, 0),
+            angular: part(c, 3),
+        };
+        columns.map(column).collect()
     }
 
     /// D, 6 x r.

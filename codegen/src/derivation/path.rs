@@ -53,7 +53,7 @@ pub struct Path<'a> {
     /// Its orientation.
     pub(super) rotation: Matrix3<'a>,
     /// ∂(velocity of the origin)/∂v and ∂(angular velocity)/∂v.
-    pub(super) columns: Vec<[Vector3<'a>; 2]>,
+    pub(super) columns: Vec<SpatialMotion<'a>>,
 }
 
 /// A relative motion: velocity and acceleration of the origin, angular velocity and acceleration.
@@ -98,8 +98,8 @@ impl<'a> Path<'a> {
     }
 
     /// The velocities for a unit rate of the independent joint `index`.
-    fn column(&self, index: usize) -> [Vector3<'a>; 2] {
-        let mut sum = [Vector3::zero(self.arena); 2];
+    fn column(&self, index: usize) -> SpatialMotion<'a> {
+        let mut sum = SpatialMotion::zero(self.arena);
         for (at, step) in self.steps.iter().enumerate() {
             let factor = step.row[index];
             if factor.is_zero() {
@@ -109,10 +109,10 @@ impl<'a> Path<'a> {
             let axis = step.axis.scaled(factor);
             match step.kind {
                 JointKind::Revolute => {
-                    sum[0] = sum[0] + axis.cross(self.lever(at));
-                    sum[1] = sum[1] + axis;
+                    sum.linear = sum.linear + axis.cross(self.lever(at));
+                    sum.angular = sum.angular + axis;
                 }
-                JointKind::Prismatic => sum[0] = sum[0] + axis,
+                JointKind::Prismatic => sum.linear = sum.linear + axis,
                 JointKind::Fixed => {}
             }
         }

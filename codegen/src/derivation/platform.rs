@@ -3,7 +3,8 @@
 
 use super::orientation::constant_rotation;
 use super::path::Path;
-use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
+use super::spatial::{SpatialMotion, Wrench};
+use crate::cas::{Arena, CosineSine, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::{Motion, Placement, TwistCoordinate};
 
 /// Position and orientation of the platform frame in the base frame.
@@ -29,22 +30,22 @@ pub(super) enum Directions<'a> {
 impl<'a> Directions<'a> {
     /// The components of a force that acts at `arm` from the platform's origin, with a moment, on the
     /// independent coordinates.
-    pub(super) fn components(&self, arm: Vector3<'a>, wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+    pub(super) fn components(&self, arm: Vector3<'a>, wrench: Wrench<'a>) -> Vec<Expr<'a>> {
         match self {
             Self::Axes(motion) => on_twist(&motion.twist(), arm, wrench),
             Self::Joints(path) => {
-                let [force, moment] = wrench;
-                let turned = arm.cross(force) + moment;
+                let Wrench { force, moment } = wrench;
+                let about_origin = arm.cross(force) + moment;
                 let columns = path.columns.iter();
                 columns
-                    .map(|[linear, angular]| linear.dot(force) + angular.dot(turned))
+                    .map(|c| c.linear.dot(force) + c.angular.dot(about_origin))
                     .collect()
             }
         }
     }
 
     /// Velocity of the point at `arm` and angular velocity per independent rate.
-    pub(super) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<[Vector3<'a>; 2]> {
+    pub(super) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<SpatialMotion<'a>> {
         let (unit, zero) = (
             |axis: usize| Vector3::unit(arena, axis),
             Vector3::zero(arena),
@@ -52,16 +53,23 @@ impl<'a> Directions<'a> {
         match self {
             Self::Axes(motion) => {
                 let column = |c: &TwistCoordinate| match c {
-                    TwistCoordinate::Linear(axis) => [unit(*axis), zero],
-                    TwistCoordinate::Angular(axis) => [unit(*axis).cross(arm), unit(*axis)],
+                    TwistCoordinate::Linear(axis) => SpatialMotion {
+                        linear: unit(*axis),
+                        angular: zero,
+                    },
+                    TwistCoordinate::Angular(axis) => SpatialMotion {
+                        linear: unit(*axis).cross(arm),
+                        angular: unit(*axis),
+                    },
                 };
                 motion.twist().iter().map(column).collect()
             }
             Self::Joints(path) => {
-                let columns = path.columns.iter();
-                columns
-                    .map(|[linear, angular]| [*linear + angular.cross(arm), *angular])
-                    .collect()
+                let column = |own: &SpatialMotion<'a>| SpatialMotion {
+                    linear: own.linear_at(arm),
+                    angular: own.angular,
+                };
+                path.columns.iter().map(column).collect()
             }
         }
     }
@@ -88,8 +96,9 @@ pub struct PlatformMotion<'a> {
 pub(super) fn on_twist<'a>(
     twist: &[TwistCoordinate],
     arm: Vector3<'a>,
-    [force, moment]: [Vector3<'a>; 2],
+    wrench: Wrench<'a>,
 ) -> Vec<Expr<'a>> {
+    let Wrench { force, moment } = wrench;
     let turned = arm.cross(force) + moment;
     let entry = |c: &TwistCoordinate| match c {
         TwistCoordinate::Linear(axis) => force.0[*axis],
@@ -120,7 +129,7 @@ impl<'a> PlatformPose<'a> {
         let mut rotation = Matrix3::identity(arena);
         if let Some(axis) = motion.rotation_axis() {
             let phi = arena.input_angle("pose", count - 1);
-            let (cosine, sine) = arena.cosine_and_sine(&phi);
+            let CosineSine { cosine, sine } = arena.cosine_and_sine(&phi);
             rotation = Matrix3::rotation(axis, cosine.named("c_phi"), sine.named("s_phi"));
         } else if motion.has_quaternion() {
             rotation = quaternion_rotation(std::array::from_fn(|i| input(count - 4 + i)));
@@ -159,7 +168,7 @@ impl<'a> PlatformPose<'a> {
     #[must_use]
     pub(super) fn row(&self, at: [Number; 3], row: usize) -> Vec<Expr<'a>> {
         let columns = self.directions.columns(self.arena, self.arm(at));
-        columns.iter().map(|c| c[row / 3].0[row % 3]).collect()
+        columns.iter().map(|c| c.component(row)).collect()
     }
 
     /// Orientation of a frame that is fixed on the platform.
@@ -254,7 +263,8 @@ pub fn centripetal<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
 }
 
 /// The rotation matrix of a unit quaternion (w, x, y, z).
-fn quaternion_rotation([w, x, y, z]: [Expr<'_>; 4]) -> Matrix3<'_> {
+fn quaternion_rotation(quaternion: [Expr<'_>; 4]) -> Matrix3<'_> {
+    let [w, x, y, z] = quaternion;
     let arena = w.arena();
     let (one, two) = (arena.one(), arena.integer(2));
     let (x2, y2, z2) = (two * x, two * y, two * z);

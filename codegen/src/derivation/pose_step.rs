@@ -15,12 +15,11 @@
 //! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
 //! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
 
-use super::configuration::Unit;
 use super::elimination::{Rows, adjugate};
 use super::guard::GuardKind;
 use super::linear::{apply, dot, product};
 use super::sheet::Sheet;
-use crate::cas::Expr;
+use crate::cas::{CosineSine, Expr};
 use crate::mechanism::JointKind;
 use crate::mechanism::numeric::best_conditioned;
 use nalgebra::DMatrix;
@@ -37,7 +36,10 @@ const BLOCK: usize = 2;
 const LAST: usize = 3;
 
 /// Rows of a linear system, with their right-hand sides.
-type System<'a> = (Rows<'a>, Vec<Expr<'a>>);
+struct System<'a> {
+    rows: Rows<'a>,
+    right: Vec<Expr<'a>>,
+}
 
 impl<'a> Sheet<'a, '_> {
     /// The step from the pose towards the actuators.
@@ -47,12 +49,12 @@ impl<'a> Sheet<'a, '_> {
         if positions.len() != self.robot.mechanism.dof() {
             return self.least_squares(&differences);
         }
-        let (rows, right) = self.without_divisors(&positions, &differences);
-        if let Some(step) = self.solved_by_cofactors(&rows, &right) {
+        let system = self.without_divisors(&positions, &differences);
+        if let Some(step) = self.solved_by_cofactors(&system.rows, &system.right) {
             return step;
         }
         let mut determinants = Vec::new();
-        match self.by_blocks((rows, right), &mut determinants) {
+        match self.by_blocks(&system, &mut determinants) {
             Some(step) => {
                 // The last one vanishes where J does.
                 if let Some((last, inner)) = determinants.split_last() {
@@ -77,13 +79,13 @@ impl<'a> Sheet<'a, '_> {
                 JointKind::Revolute => configuration.unit(&configuration.joint_angle(index)),
                 _ => None,
             };
-            let Some((cosine, sine)) = unit.map(unscaled) else {
+            let Some(CosineSine { cosine, sine }) = unit.map(unscaled) else {
                 return measured[k] - positions[k];
             };
-            let (c, s) = arena.cosine_and_sine(&arena.input_angle("actuators", k));
+            let measured = arena.cosine_and_sine(&arena.input_angle("actuators", k));
             let (c, s) = (
-                c.named(&format!("c_actuator_{}", k + 1)),
-                s.named(&format!("s_actuator_{}", k + 1)),
+                measured.cosine.named(&format!("c_actuator_{}", k + 1)),
+                measured.sine.named(&format!("s_actuator_{}", k + 1)),
             );
             (s * cosine - c * sine).atan2(c * cosine + s * sine)
         };
@@ -119,28 +121,31 @@ impl<'a> Sheet<'a, '_> {
                 right[k] = length * right[k];
             }
         }
-        (rows, right)
+        System { rows, right }
     }
 
     /// The solution of A x = b; the determinants that are divided by are added to those given. `None` where a
     /// block is singular at home.
     fn by_blocks(
         &self,
-        (rows, right): System<'a>,
+        system: &System<'a>,
         determinants: &mut Vec<Expr<'a>>,
     ) -> Option<Vec<Expr<'a>>> {
+        let System { rows, right } = system;
         let size = rows.len();
         if size <= LAST {
-            return Some(solved(&rows, &right, determinants));
+            return Some(solved(rows, right, determinants));
         }
         let home = |row: usize, column: usize| self.robot.at_home(rows[row][column]);
         let chosen = best_conditioned(&DMatrix::from_fn(size, BLOCK, home));
         if chosen.len() < BLOCK {
             return None;
         }
-        let [first, rest] = split((rows, right), &chosen);
-        let [p, q] = halves(&first.0);
-        let [r, s] = halves(&rest.0);
+        let is_chosen = |row: usize| chosen.contains(&row);
+        let first = system.rows_where(is_chosen);
+        let rest = system.rows_where(|row| !is_chosen(row));
+        let [p, q] = halves(&first.rows);
+        let [r, s] = halves(&rest.rows);
         let cofactors = adjugate(&p);
         let column: Vec<Expr<'a>> = cofactors.iter().map(|row| row[0]).collect();
         let determinant = dot(&p[0], &column);
@@ -152,17 +157,18 @@ impl<'a> Sheet<'a, '_> {
             .map(|row| row.into_iter().map(|entry| entry * reciprocal).collect())
             .collect();
         let inner = subtracted(&s, &product(&factors, &q));
-        let taken = apply(&factors, &first.1);
-        let remainder = rest
-            .1
+        let taken = apply(&factors, &first.right);
+        let right = rest
+            .right
             .iter()
             .zip(taken)
             .map(|(b, taken)| *b - taken)
             .collect();
-        let y = self.by_blocks((inner, remainder), determinants)?;
+        let inner = System { rows: inner, right };
+        let y = self.by_blocks(&inner, determinants)?;
         let taken = apply(&q, &y);
         let remainder: Vec<Expr<'a>> = first
-            .1
+            .right
             .iter()
             .zip(taken)
             .map(|(a, taken)| *a - taken)
@@ -173,13 +179,17 @@ impl<'a> Sheet<'a, '_> {
 }
 
 /// A direction without the constant by which both components are multiplied.
-fn unscaled<'a>((x, y): Unit<'a>) -> Unit<'a> {
-    let ((a, own_x), (b, own_y)) = (x.factor_and_base(), y.factor_and_base());
+fn unscaled(direction: CosineSine<'_>) -> CosineSine<'_> {
+    let (a, cosine) = direction.cosine.factor_and_base();
+    let (b, sine) = direction.sine.factor_and_base();
     if a.value().abs() != b.value().abs() {
-        return (x, y);
+        return direction;
     }
-    let signed = |sign: f64, base: Expr<'a>| if sign < 0.0 { -base } else { base };
-    (signed(a.value(), own_x), signed(b.value(), own_y))
+    let signed = |sign: f64, base: Expr<'_>| if sign < 0.0 { -base } else { base };
+    CosineSine {
+        cosine: signed(a.value(), cosine),
+        sine: signed(b.value(), sine),
+    }
 }
 
 /// The solution of a system of few rows by Cramer's rule.
@@ -197,11 +207,15 @@ fn solved<'a>(
     scaled.map(|x| x * reciprocal).collect()
 }
 
-/// The chosen rows of a system, and the others.
-fn split<'a>((rows, right): System<'a>, chosen: &[usize]) -> [System<'a>; 2] {
-    let all = rows.into_iter().zip(right).enumerate();
-    let (first, rest): (Vec<_>, Vec<_>) = all.partition(|(row, _)| chosen.contains(row));
-    [first, rest].map(|part| part.into_iter().map(|(_, equation)| equation).unzip())
+impl<'a> System<'a> {
+    /// The system of some of the rows.
+    fn rows_where(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
+        let (rows, right) = (0..self.rows.len())
+            .filter(|&row| is_wanted(row))
+            .map(|row| (self.rows[row].clone(), self.right[row]))
+            .unzip();
+        Self { rows, right }
+    }
 }
 
 /// The columns that are taken out together, and the others.

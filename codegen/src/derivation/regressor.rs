@@ -111,7 +111,7 @@ impl<'a> Robot<'a> {
                 self.arena.enter(&self.mechanism.legs[leg].name);
                 let form = &self.legs[leg].rates.joint[joint];
                 let row = form.row(self.arena, &projection.legs[leg]);
-                let force = self.joint_force(motion, leg, joint, symbol);
+                let force = self.joint_force(motion, JointIndex { leg, joint }, symbol);
                 row.iter().map(|&g| g * force).collect()
             }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
@@ -200,18 +200,18 @@ impl<'a> Robot<'a> {
     pub(super) fn joint_force(
         &self,
         motion: &RobotMotion<'a>,
-        leg: usize,
-        joint: usize,
+        at: JointIndex,
         symbol: StandardParameter,
     ) -> Expr<'a> {
+        let JointIndex { leg, joint } = at;
         let form = &self.legs[leg].rates.joint[joint];
         let rate = || form.value(self.arena, &motion.u[leg]);
-        if let Some(friction) = self.friction_force((leg, joint), symbol, rate) {
+        if let Some(friction) = self.friction_force(at, symbol, rate) {
             return friction;
         }
         match symbol {
             StandardParameter::Ia => form.value(self.arena, &motion.u_dot[leg]),
-            StandardParameter::K => self.spring_force(leg, joint),
+            StandardParameter::K => self.spring_force(at),
             StandardParameter::Off => self.arena.one(),
             // The ten of a body act through its wrench.
             symbol => {
@@ -277,7 +277,7 @@ impl<'a> Robot<'a> {
                 BodyParameter::Leg { .. } => None,
             };
             let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-            self.name_wrench(wrench, "", "platform");
+            self.name_wrench(&wrench, "", "platform");
             add(&mut on_twist, body.project(&self.free, wrench));
         }
         for (coordinate, force) in self.free.iter().zip(&on_twist) {
@@ -315,15 +315,16 @@ impl<'a> Robot<'a> {
                 None => {
                     let body = &motion.bodies[l][j];
                     let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-                    self.name_wrench(wrench, &leg.joints[j].name, &leg.name);
+                    self.name_wrench(&wrench, &leg.joints[j].name, &leg.name);
                     add(&mut forces, body.project(wrench));
                 }
             }
+            let at = JointIndex { leg: l, joint: j };
             let on_joint = values.iter().filter_map(|(p, value)| {
                 let symbol = own(*p).filter(|s| !s.is_inertial())?;
-                Some(self.joint_force(motion, l, j, symbol) * *value)
+                Some(self.joint_force(motion, at, symbol) * *value)
             });
-            let known = self.known_force(l, j);
+            let known = self.known_force(at);
             let on_joint = on_joint.fold(known, |sum, force| sum + force);
             let on_joint = on_joint.named(&joined(&["tau", &leg.joints[j].name, &leg.name]));
             let form = &self.legs[l].rates.joint[j];
@@ -338,14 +339,12 @@ impl<'a> Robot<'a> {
         &self,
         values: &[(BodyParameter, Expr<'a>)],
         own: &dyn Fn(BodyParameter) -> Option<StandardParameter>,
-        unit_wrench: &dyn Fn(StandardParameter) -> [Vector3<'a>; 2],
-    ) -> [Vector3<'a>; 2] {
-        let mut total = [Vector3::zero(self.arena); 2];
+        unit_wrench: &dyn Fn(StandardParameter) -> Wrench<'a>,
+    ) -> Wrench<'a> {
+        let mut total = Wrench::zero(self.arena);
         for (parameter, value) in values {
             if let Some(symbol) = own(*parameter).filter(|s| s.is_inertial()) {
-                let [force, moment] = unit_wrench(symbol);
-                total[0] = total[0] + force.scaled(*value);
-                total[1] = total[1] + moment.scaled(*value);
+                total = total.plus_scaled(&unit_wrench(symbol), *value);
             }
         }
         total

@@ -1,7 +1,7 @@
 //! The derivation of one robot in one graph: configuration, closures, motion, and what every
 //! function is made of.
 
-use super::body::{leg_base, leg_bodies};
+use super::body::{LegRates, leg_base, leg_bodies};
 use super::carried::{CarriedBody, Mount};
 use super::closure::LegClosure;
 use super::configuration::Configuration;
@@ -193,7 +193,7 @@ impl<'a> Robot<'a> {
                     .map(|end| state.less_gravity(end)),
                 _ => None,
             };
-            let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {
+            let rates = match (&state.closure, own.as_ref().or(platform.as_ref())) {
                 (Some(closure), Some(platform)) => {
                     let u = self.rates_of_leg(state, closure, twist, platform);
                     name_rates(leg, &u, "rate");
@@ -201,30 +201,26 @@ impl<'a> Robot<'a> {
                     let labels = accelerations.labels(leg, "a_on_f");
                     let u_dot = closure.accelerations(self.arena, platform, &bias, &labels);
                     name_rates(leg, &u_dot, &accelerations.name("rate_dot"));
-                    (u, u_dot)
+                    LegRates { u, u_dot }
                 }
                 _ => {
                     let range = self.mechanism.coordinate_range(motion.u.len());
-                    (twist[range.clone()].to_vec(), acceleration[range].to_vec())
+                    LegRates {
+                        u: twist[range.clone()].to_vec(),
+                        u_dot: acceleration[range].to_vec(),
+                    }
                 }
             };
             let carrier = leg.base_body;
             let carrier = carrier.map(|body| &motion.bodies[body.leg][body.joint]);
-            let base = leg_base(self.arena, leg, u.len(), carrier, gravity);
-            let bodies = leg_bodies(
-                self.arena,
-                leg,
-                state,
-                &self.configuration,
-                (&u, &u_dot),
-                &base,
-            )?;
+            let base = leg_base(self.arena, leg, rates.u.len(), carrier, gravity);
+            let bodies = leg_bodies(self.arena, leg, state, &self.configuration, &rates, &base)?;
             let end = own.as_ref().or(platform.as_ref());
             motion
                 .ends
                 .push(end.and_then(|end| state.end_less_gravity(leg, end)));
-            motion.u.push(u);
-            motion.u_dot.push(u_dot);
+            motion.u.push(rates.u);
+            motion.u_dot.push(rates.u_dot);
             let mounts = Mount::of_leg(self.arena, leg);
             let on_platform = mounts.iter().map(|m| m.as_ref().and_then(&carried));
             motion.carried.push(on_platform.collect());

@@ -5,7 +5,7 @@ use super::guard::{Guard, GuardKind};
 use super::joint::{joint_slide, joint_turn};
 use super::robot::Robot;
 use crate::cas::{Angle, Arena, Direction, Expr, Number, Ratio};
-use crate::mechanism::{Formula, JointKind};
+use crate::mechanism::{Formula, JointIndex, JointKind};
 
 /// The position of a joint: as a number, and as an angle where it turns.
 struct Position<'a> {
@@ -15,23 +15,23 @@ struct Position<'a> {
 
 impl<'a> Robot<'a> {
     /// The torque of a joint's spring per unit of its coefficient; zero without a spring.
-    pub(super) fn spring_force(&self, leg: usize, joint: usize) -> Expr<'a> {
-        let spring = self.mechanism.legs[leg].joints[joint].spring.as_ref();
+    pub(super) fn spring_force(&self, at: JointIndex) -> Expr<'a> {
+        let spring = self.mechanism.joint(at).spring.as_ref();
         let formula = spring.map(|spring| &spring.formula);
-        self.torque_of_position((leg, joint), formula, &mut Vec::new())
+        self.torque_of_position(at, formula, &mut Vec::new())
     }
 
     /// The torque of a joint's position that is known; zero where none is.
-    pub(super) fn known_force(&self, leg: usize, joint: usize) -> Expr<'a> {
-        let known = self.mechanism.legs[leg].joints[joint].known.as_ref();
-        self.torque_of_position((leg, joint), known, &mut Vec::new())
+    pub(super) fn known_force(&self, at: JointIndex) -> Expr<'a> {
+        let known = self.mechanism.joint(at).known.as_ref();
+        self.torque_of_position(at, known, &mut Vec::new())
     }
 
     /// The load in proportion to which a joint has friction; zero where none is described.
-    pub(super) fn load(&self, leg: usize, joint: usize) -> Expr<'a> {
-        let load = self.mechanism.legs[leg].joints[joint].load.as_ref();
+    pub(super) fn load(&self, at: JointIndex) -> Expr<'a> {
+        let load = self.mechanism.joint(at).load.as_ref();
         let formula = load.map(|load| &load.formula);
-        self.torque_of_position((leg, joint), formula, &mut Vec::new())
+        self.torque_of_position(at, formula, &mut Vec::new())
     }
 
     /// Conditions for the springs of all legs, and for the torques and loads that are known, to have a value: roots of
@@ -43,8 +43,9 @@ impl<'a> Robot<'a> {
             for (joint, own) in leg.joints.iter().enumerate() {
                 let spring = own.spring.as_ref().map(|spring| &spring.formula);
                 let load = own.load.as_ref().map(|load| &load.formula);
+                let at = JointIndex { leg: index, joint };
                 for formula in [spring, own.known.as_ref(), load] {
-                    let _ = self.torque_of_position((index, joint), formula, &mut radicands);
+                    let _ = self.torque_of_position(at, formula, &mut radicands);
                 }
             }
             guards.extend(radicands.into_iter().map(|value| Guard {
@@ -58,18 +59,19 @@ impl<'a> Robot<'a> {
 
     fn torque_of_position(
         &self,
-        (leg, joint): (usize, usize),
+        at: JointIndex,
         formula: Option<&Formula>,
         radicands: &mut Vec<Expr<'a>>,
     ) -> Expr<'a> {
         let value = formula
-            .zip(formula.and_then(|_| self.position(leg, joint)))
+            .zip(formula.and_then(|_| self.position(at)))
             .and_then(|(formula, position)| expression(self.arena, formula, &position, radicands));
         value.unwrap_or_else(|| self.arena.zero())
     }
 
     /// The position of a joint without its constant.
-    fn position(&self, leg: usize, index: usize) -> Option<Position<'a>> {
+    fn position(&self, at: JointIndex) -> Option<Position<'a>> {
+        let JointIndex { leg, joint: index } = at;
         let (of, first) = (&self.mechanism.legs[leg], self.legs[leg].first_joint);
         let joint = &of.joints[index];
         let turn = joint_turn(of, index, first, &self.configuration)?.without_offset();
@@ -103,8 +105,8 @@ fn expression<'a>(
         Formula::Linear { offset, factor } => {
             position.number * Number::ratio(*factor) + arena.number(*offset)
         }
-        Formula::Cosine { offset, factor } => unit(offset, factor)?.0,
-        Formula::Sine { offset, factor } => unit(offset, factor)?.1,
+        Formula::Cosine { offset, factor } => unit(offset, factor)?.cosine,
+        Formula::Sine { offset, factor } => unit(offset, factor)?.sine,
         Formula::Sum(a, b) => of(a)? + of(b)?,
         Formula::Product(a, b) => of(a)? * of(b)?,
         Formula::Quotient(a, b) => of(a)? * of(b)?.reciprocal(),

@@ -9,10 +9,10 @@
 
 use super::actuators::{ActuatorSystem, COFACTORS, OwnForces};
 use super::elimination::{Rows, inverse};
+use super::function_form::FunctionForm;
 use super::functions::{Derived, on_sheet, with_divisors};
 use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, dot, transposed};
-use super::motion_input::MotionInput;
 use super::selection::Selection;
 use super::sheet::{Owner, Sheet, column};
 use super::underivable::Underivable;
@@ -56,11 +56,11 @@ pub(crate) fn derive_addends<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &Selection,
-    (function, from): (Function, MotionInput),
+    form: FunctionForm,
 ) -> Result<Option<Addends<'a>>, Underivable> {
     let mut shape = None;
-    let derived = on_sheet(arena, mechanism, selection, (function, from), |sheet| {
-        let Some(parts) = sheet.addends(function) else {
+    let derived = on_sheet(arena, mechanism, selection, form, |sheet| {
+        let Some(parts) = sheet.addends(form.function) else {
             return Ok(Vec::new());
         };
         let rows = parts.rows.len() / (mechanism.dof() + 1);
@@ -104,28 +104,55 @@ pub(crate) fn derive_of_sums(arena: &Arena, function: Function, dof: usize) -> D
     of_inputs(vec![(SUMS, count)], rows, &pivots, kind)
 }
 
-/// The torques τ = τ_own + J⁻ᵀ F of a small square J, whose rows with τ_own the legs have: of each leg one after the other,
-/// and of each number of them that `is_there` the values of all legs. `None` if J is not solved so.
+/// The numbers that legs of one shape contribute to the actuators' system: for each actuator of a leg a row of J and
+/// the force on the actuator itself.
+pub(crate) struct LegRowLayout<'l> {
+    /// Degrees of freedom: the columns of J.
+    pub(crate) dof: usize,
+    /// How many legs there are.
+    pub(crate) legs: usize,
+    /// Of each number of a leg, row by row, whether it may differ from zero.
+    pub(crate) is_present: &'l [bool],
+}
+
+impl LegRowLayout<'_> {
+    /// The numbers of a row.
+    const fn width(&self) -> usize {
+        self.dof + 1
+    }
+
+    /// The place of a number of a leg among those that are present, each for all legs; `None` if it is zero.
+    fn place(&self, leg: usize, number: usize) -> Option<usize> {
+        let before = self.is_present[..number].iter();
+        let before = before.filter(|is_present| **is_present).count();
+        self.is_present[number].then_some(before * self.legs + leg)
+    }
+
+    /// How many numbers are present, in all legs.
+    fn count(&self) -> usize {
+        let present = self.is_present.iter();
+        present.filter(|is_present| **is_present).count() * self.legs
+    }
+}
+
+/// The torques τ = τ_own + J⁻ᵀ F of a small square J, from the rows of J and τ_own of the legs. `None` if J is not
+/// solved by cofactors.
 pub(crate) fn derive_of_rows<'a>(
     arena: &'a Arena,
-    (dof, legs): (usize, usize),
-    is_there: &[bool],
+    layout: &LegRowLayout<'_>,
     home: &dyn Fn(InputElement) -> Option<f64>,
 ) -> Option<Derived<'a>> {
-    let width = dof + 1;
-    let before = |at: usize| is_there[..at].iter().filter(|there| **there).count();
-    let number = |leg: usize, at: usize| {
-        if is_there[at] {
-            arena.input(ROWS, before(at) * legs + leg)
-        } else {
-            arena.zero()
-        }
+    let (dof, width) = (layout.dof, layout.width());
+    let number = |leg: usize, at: usize| match layout.place(leg, at) {
+        Some(place) => arena.input(ROWS, place),
+        None => arena.zero(),
     };
     let row = |leg: usize, row: usize| -> Vec<Expr<'a>> {
         let numbers = row * width..(row + 1) * width;
         numbers.map(|at| number(leg, at)).collect()
     };
-    let rows = (0..legs).flat_map(|leg| (0..is_there.len() / width).map(move |k| (leg, k)));
+    let rows_of_leg = layout.is_present.len() / width;
+    let rows = (0..layout.legs).flat_map(|leg| (0..rows_of_leg).map(move |k| (leg, k)));
     let rows: Rows<'a> = rows.map(|(leg, k)| row(leg, k)).collect();
     let jacobian: Rows<'a> = rows.iter().map(|row| row[..dof].to_vec()).collect();
     let known = |symbol| home(arena.input_element(symbol)?);
@@ -139,7 +166,7 @@ pub(crate) fn derive_of_rows<'a>(
         home: 1.0,
         actuators: ActuatorGroup::All,
     };
-    let inputs = vec![(SUMS, dof), (ROWS, before(is_there.len()) * legs)];
+    let inputs = vec![(SUMS, dof), (ROWS, layout.count())];
     Some(of_inputs(inputs, column(torques.collect()), &pivots, kind))
 }
 

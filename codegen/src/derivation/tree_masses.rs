@@ -85,16 +85,16 @@ impl<'a> Robot<'a> {
         &self,
         chains: &[Chain<'_, 'a>],
         index: usize,
-        mut wrench: [Vector3<'a>; 2],
+        mut wrench: Wrench<'a>,
     ) -> Vec<(BodyIndex, Vec<Expr<'a>>)> {
         let mut leg = &self.mechanism.legs[index];
         let mut all = Vec::new();
         while let Some(carrier) = leg.base_body {
             let chain = &chains[carrier.leg];
-            let on_body = wrench_on_carrier(self.arena, leg, wrench);
-            let (forces, at_base) = chain.read_along(carrier.joint, on_body);
-            all.push((carrier, forces));
-            wrench = at_base;
+            let on_body = wrench_on_carrier(self.arena, leg, &wrench);
+            let transferred = chain.project_to_base(carrier.joint, on_body);
+            all.push((carrier, transferred.forces));
+            wrench = transferred.at_base;
             leg = &self.mechanism.legs[carrier.leg];
         }
         all
@@ -111,10 +111,12 @@ pub(super) fn on_carrier<'a>(arena: &'a Arena, leg: &Leg, at_base: &Inertia<'a>)
 pub(super) fn wrench_on_carrier<'a>(
     arena: &'a Arena,
     leg: &Leg,
-    wrench: [Vector3<'a>; 2],
-) -> [Vector3<'a>; 2] {
-    let turn = constant_rotation(arena, leg.base.rotation);
-    let [force, moment] = wrench.map(|part| turn * part);
+    wrench: &Wrench<'a>,
+) -> Wrench<'a> {
+    let Wrench { force, moment } = wrench.rotated(constant_rotation(arena, leg.base.rotation));
     let lever = Vector3::constant(arena, leg.base.at).cross(force);
-    [force, moment + lever]
+    Wrench {
+        force,
+        moment: moment + lever,
+    }
 }

@@ -4,7 +4,8 @@ use super::configuration::Configuration;
 use super::joint::joint_turn;
 use super::orientation::constant_rotation;
 use super::rates::parallel;
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
+use super::spatial::Wrench;
+use crate::cas::{Angle, Arena, CosineSine, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::mechanism::Leg;
 
 /// The rotation between the antecedent frame and a joint's frame.
@@ -13,7 +14,7 @@ pub(super) struct Turn<'a> {
     /// Rot(z, γ) Rot(x, α) where the axes are not parallel.
     tilt: Option<Tilt<'a>>,
     /// Cosine and sine of the turn about z that follows.
-    unit: (Expr<'a>, Expr<'a>),
+    unit: CosineSine<'a>,
     /// The turn about z as a matrix.
     matrix: Matrix3<'a>,
 }
@@ -22,8 +23,8 @@ pub(super) struct Turn<'a> {
 #[derive(Debug)]
 struct Tilt<'a> {
     matrix: Matrix3<'a>,
-    about_z: (Expr<'a>, Expr<'a>),
-    about_x: (Expr<'a>, Expr<'a>),
+    about_z: CosineSine<'a>,
+    about_x: CosineSine<'a>,
 }
 
 impl<'a> Turn<'a> {
@@ -47,7 +48,7 @@ impl<'a> Turn<'a> {
         Some(Self {
             tilt,
             unit,
-            matrix: Matrix3::rotation(2, unit.0, unit.1),
+            matrix: Matrix3::rotation(2, unit.cosine, unit.sine),
         })
     }
 
@@ -65,6 +66,14 @@ impl<'a> Turn<'a> {
         tilt.map_or(vector, |tilt| tilt.matrix * vector)
     }
 
+    /// A wrench of the joint's frame in the axes of the antecedent frame.
+    pub(super) fn back_wrench(&self, wrench: &Wrench<'a>) -> Wrench<'a> {
+        Wrench {
+            force: self.back(wrench.force),
+            moment: self.back(wrench.moment),
+        }
+    }
+
     /// A symmetric matrix of the joint's frame in the antecedent frame.
     pub(super) fn back_symmetric(&self, matrix: Matrix3<'a>) -> Matrix3<'a> {
         let turned = turned(matrix, 2, self.unit);
@@ -79,7 +88,10 @@ impl<'a> Tilt<'a> {
     fn new(arena: &'a Arena, gamma: Angle, alpha: Angle) -> Self {
         let number = |angle: Angle| {
             let (cosine, sine) = angle.cosine_and_sine();
-            (arena.number(cosine), arena.number(sine))
+            CosineSine {
+                cosine: arena.number(cosine),
+                sine: arena.number(sine),
+            }
         };
         let about_z = constant_rotation(arena, [Angle::ZERO, Angle::ZERO, gamma]);
         let about_x = constant_rotation(arena, [alpha, Angle::ZERO, Angle::ZERO]);
@@ -97,7 +109,7 @@ impl<'a> Tilt<'a> {
 pub(super) fn turned<'a>(
     matrix: Matrix3<'a>,
     axis: usize,
-    (cosine, sine): (Expr<'a>, Expr<'a>),
+    CosineSine { cosine, sine }: CosineSine<'a>,
 ) -> Matrix3<'a> {
     let (i, j, k) = ((axis + 1) % 3, (axis + 2) % 3, axis);
     let m = matrix.0;

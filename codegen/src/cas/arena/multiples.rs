@@ -107,8 +107,9 @@ mod tests {
                 arena.find_irrational_multiples();
             }
             let q = arena.input("joints", 0);
-            let (c, s) = arena.cosine_and_sine(&arena.input_angle("joints", 1));
-            let (_, root) = arena.cosine_and_sine(&sixty);
+            let CosineSine { cosine: c, sine: s } =
+                arena.cosine_and_sine(&arena.input_angle("joints", 1));
+            let root = arena.cosine_and_sine(&sixty).sine;
             let determinant = c * (root * (c * q)) + s * (root * (s * q));
             let (factor, base) = determinant.factor_and_base();
             (factor.value(), base == q)

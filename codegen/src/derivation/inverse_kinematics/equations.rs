@@ -12,21 +12,67 @@ use super::super::joint::{joint_slide, joint_turn};
 use super::super::orientation::constant_rotation;
 use super::super::rates::parallel;
 use super::Task;
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
+use crate::cas::{Angle, CosineSine, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::mechanism::Joint;
 
-/// Orientation, as prefix and turn about z, and origin of a frame.
+/// An orientation as prefix, then a turn about z. Turns about parallel axes add up.
 #[derive(Debug, Clone)]
-struct Frame<'a> {
+struct TurnedPrefix<'a> {
     prefix: Matrix3<'a>,
     turn: Direction,
+}
+
+/// A frame of the leg.
+#[derive(Debug, Clone)]
+struct Frame<'a> {
+    orientation: TurnedPrefix<'a>,
     origin: Vector3<'a>,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> TurnedPrefix<'a> {
+    const fn of(prefix: Matrix3<'a>) -> Self {
+        Self {
+            prefix,
+            turn: Direction::constant(Angle::ZERO),
+        }
+    }
+
     fn rotation(&self, configuration: &Configuration<'a>) -> Option<Matrix3<'a>> {
-        let (cosine, sine) = configuration.unit(&self.turn)?;
+        let CosineSine { cosine, sine } = configuration.unit(&self.turn)?;
         Some(self.prefix * Matrix3::rotation(2, cosine, sine))
+    }
+
+    /// The orientation of a joint's frame before its own turn θ; `self` is that of the antecedent's frame.
+    fn before_turn_of(&self, joint: &Joint, configuration: &Configuration<'a>) -> Option<Self> {
+        let arena = configuration.arena();
+        let turn = self.turn.plus(&Direction::constant(joint.gamma))?;
+        let tilt = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
+        Some(match parallel(joint.alpha) {
+            Some(sign) if sign == Ratio::ONE => Self {
+                prefix: self.prefix,
+                turn,
+            },
+            Some(_) => Self {
+                prefix: self.prefix * tilt,
+                turn: turn.negative(),
+            },
+            None => {
+                let CosineSine { cosine, sine } = configuration.unit(&turn)?;
+                let turned = self.prefix * Matrix3::rotation(2, cosine, sine);
+                Self::of(turned * tilt)
+            }
+        })
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// The base frame of a leg.
+    fn base(task: Task<'a, '_>) -> Self {
+        let base = &task.leg.base;
+        Self {
+            orientation: TurnedPrefix::of(constant_rotation(task.arena, base.rotation)),
+            origin: Vector3::constant(task.arena, base.at),
+        }
     }
 }
 
@@ -35,22 +81,18 @@ pub(in crate::derivation) fn equations<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
 ) -> Option<Vec<Expr<'a>>> {
-    let Task { arena, leg, .. } = task;
+    let leg = task.leg;
     let mut path = path_to_end(leg);
     path.reverse();
     let shared = leg.end.as_ref()?.shared_components();
     if shared.len() < 3 {
         return along_base_axes(task, configuration, &path, &shared);
     }
-    let mut frame = Frame {
-        prefix: constant_rotation(arena, leg.base.rotation),
-        turn: Direction::constant(Angle::ZERO),
-        origin: Vector3::constant(arena, leg.base.at),
-    };
+    let mut frame = Frame::base(task);
     let mut equations = Vec::new();
     for at in 0..path.len() {
         let before = step_to(task, configuration, path[at], &frame)?;
-        let rotation = before.rotation(configuration)?;
+        let rotation = before.orientation.rotation(configuration)?;
         let arm = task.target - before.origin;
         let (end, end_axes) = chain(task, configuration, &path[at..], true)?;
         // What the joint's own turn does not change is written without it.
@@ -78,11 +120,7 @@ fn along_base_axes<'a>(
     path: &[usize],
     shared: &[usize],
 ) -> Option<Vec<Expr<'a>>> {
-    let mut frame = Frame {
-        prefix: constant_rotation(task.arena, task.leg.base.rotation),
-        turn: Direction::constant(Angle::ZERO),
-        origin: Vector3::constant(task.arena, task.leg.base.at),
-    };
+    let mut frame = Frame::base(task);
     for &joint in path {
         frame = step_to(task, configuration, joint, &frame)?;
         frame = step_over(task, configuration, joint, frame)?;
@@ -100,8 +138,7 @@ fn chain<'a>(
     turns: bool,
 ) -> Option<(Vector3<'a>, Matrix3<'a>)> {
     let mut frame = Frame {
-        prefix: Matrix3::identity(task.arena),
-        turn: Direction::constant(Angle::ZERO),
+        orientation: TurnedPrefix::of(Matrix3::identity(task.arena)),
         origin: Vector3::zero(task.arena),
     };
     for (i, &joint) in path.iter().enumerate() {
@@ -110,10 +147,11 @@ fn chain<'a>(
         }
         frame = step_over(task, configuration, joint, frame)?;
         if i == 0 && !turns {
-            frame.turn = Direction::constant(Angle::ZERO);
+            frame.orientation.turn = Direction::constant(Angle::ZERO);
         }
     }
-    Some((frame.origin, frame.rotation(configuration)?))
+    let axes = frame.orientation.rotation(configuration)?;
+    Some((frame.origin, axes))
 }
 
 /// From a joint's antecedent to the joint before its motion.
@@ -124,14 +162,12 @@ fn step_to<'a>(
     from: &Frame<'a>,
 ) -> Option<Frame<'a>> {
     let (arena, this) = (task.arena, &task.leg.joints[joint]);
-    let start = (from.prefix, &from.turn);
-    let (prefix, turn) = before_turn(arena, this, start, configuration)?;
+    let orientation = from.orientation.before_turn_of(this, configuration)?;
     let (cosine, sine) = this.gamma.cosine_and_sine();
     let along = Vector3::constant(arena, [this.d * cosine, this.d * sine, this.b]);
     Some(Frame {
-        prefix,
-        turn,
-        origin: from.origin + from.rotation(configuration)? * along,
+        orientation,
+        origin: from.origin + from.orientation.rotation(configuration)? * along,
     })
 }
 
@@ -145,29 +181,10 @@ fn step_over<'a>(
     let slide = joint_slide(task.arena, task.leg, joint, task.first_joint, configuration)?;
     let turn = joint_turn(task.leg, joint, task.first_joint, configuration)?;
     Some(Frame {
-        turn: before.turn.plus(&turn)?,
-        origin: before.origin + before.prefix.column(2).scaled(slide),
-        prefix: before.prefix,
-    })
-}
-
-/// Orientation of a joint's frame before its own turn θ, as prefix and turn about z, from the same of
-/// its antecedent. Turns about parallel axes add up.
-fn before_turn<'a>(
-    arena: &'a Arena,
-    joint: &Joint,
-    (prefix, turn): (Matrix3<'a>, &Direction),
-    configuration: &Configuration<'a>,
-) -> Option<(Matrix3<'a>, Direction)> {
-    let turned = turn.plus(&Direction::constant(joint.gamma))?;
-    let tilt = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
-    Some(match parallel(joint.alpha) {
-        Some(sign) if sign == Ratio::ONE => (prefix, turned),
-        Some(_) => (prefix * tilt, turned.negative()),
-        None => {
-            let (cosine, sine) = configuration.unit(&turned)?;
-            let turned = prefix * Matrix3::rotation(2, cosine, sine);
-            (turned * tilt, Direction::constant(Angle::ZERO))
-        }
+        orientation: TurnedPrefix {
+            prefix: before.orientation.prefix,
+            turn: before.orientation.turn.plus(&turn)?,
+        },
+        origin: before.origin + before.orientation.prefix.column(2).scaled(slide),
     })
 }

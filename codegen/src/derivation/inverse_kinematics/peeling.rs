@@ -16,7 +16,7 @@ use super::super::configuration::{Configuration, Unknown};
 use super::equations::equations;
 use super::polynomial::{Linear, Quadratic, linear, quadratic};
 use super::{Reach, Task};
-use crate::cas::{Expr, Number, Ratio};
+use crate::cas::{CosineSine, Expr, Number, Ratio};
 use crate::mechanism::JointKind;
 
 /// A divisor or root smaller than this fraction of what it is made of counts as zero.
@@ -92,7 +92,7 @@ fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Op
     let arena = task.arena;
     let own = match unknown {
         Unknown::Turn(_) => {
-            let (cosine, sine) = unknown.unit(arena);
+            let CosineSine { cosine, sine } = unknown.unit(arena);
             vec![cosine, sine]
         }
         Unknown::Slide(_) => vec![unknown.slide(arena)],

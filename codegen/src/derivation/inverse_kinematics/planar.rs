@@ -10,13 +10,20 @@ use super::super::joint::joint_turn;
 use super::super::orientation::constant_rotation;
 use super::super::rates::parallel;
 use super::{Reach, Task};
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
+use crate::cas::{Angle, Arena, CosineSine, Direction, Expr, Matrix3, Number, Ratio, Vector3};
 use crate::mechanism::{End, JointKind, Leg};
 
-/// A link in the plane: length and the angle of its direction.
+/// A link in the plane.
 struct Link {
     length: Number,
+    /// The angle of the line from its joint to the next.
     direction: Direction,
+}
+
+/// The two links between the leg's first joint and its end.
+struct LinkPair {
+    first: Link,
+    second: Link,
 }
 
 /// Learns the leg's angles from the pose. `None` if the rule does not fit the leg.
@@ -42,7 +49,11 @@ pub(super) fn solve<'a>(
         // The last frame's orientation is the platform's: its turn is known.
         let turn = total_turn(leg, last, first_joint, configuration)?;
         let relative = prefix.transposed() * axes;
-        configuration.learn(turn, (relative.0[0][0], relative.0[1][0]));
+        let turned = CosineSine {
+            cosine: relative.0[0][0],
+            sine: relative.0[1][0],
+        };
+        configuration.learn(turn, turned);
     }
     Some(vec![reach])
 }
@@ -52,7 +63,7 @@ fn planar_links(
     leg: &Leg,
     first_joint: usize,
     configuration: &Configuration<'_>,
-) -> Option<[Link; 2]> {
+) -> Option<LinkPair> {
     let end = leg.end.as_ref()?;
     if end.shared_components().len() < 3 {
         return None;
@@ -82,7 +93,10 @@ fn planar_links(
             direction,
         })
     };
-    Some([link(1)?, link(2)?])
+    Some(LinkPair {
+        first: link(1)?,
+        second: link(2)?,
+    })
 }
 
 /// The sum of all turns about z up to joint `index`, from the plane's frame on.
@@ -130,11 +144,12 @@ fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
 /// Both links' unit vectors from the end's position in the plane.
 fn two_links<'a>(
     task: Task<'a, '_>,
-    [first, second]: &[Link; 2],
+    links: &LinkPair,
     end: Vector3<'a>,
     configuration: &mut Configuration<'a>,
 ) -> Option<Reach<'a>> {
     let arena = task.arena;
+    let LinkPair { first, second } = links;
     let (l1, l2) = (first.length, second.length);
     let named = |value: Expr<'a>, what: &str| value.named(&format!("{what}_{}", task.leg.name));
     let (x, y) = (named(end.x(), "d_x"), named(end.y(), "d_y"));
@@ -161,15 +176,21 @@ fn two_links<'a>(
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
     let (e1x, e1y) = (named(e1x, "l1_x"), named(e1y, "l1_y"));
     let [inverse1, inverse2] = [l1, l2].map(|length| over(one, arena.number(length)));
-    let unit = (e1x * inverse1, e1y * inverse1);
+    let unit = CosineSine {
+        cosine: e1x * inverse1,
+        sine: e1y * inverse1,
+    };
     configuration.learn(first.direction.clone(), unit);
     let (e2x, e2y) = (named(x - e1x, "l2_x"), named(y - e1y, "l2_y"));
-    let unit = (e2x * inverse2, e2y * inverse2);
+    let unit = CosineSine {
+        cosine: e2x * inverse2,
+        sine: e2y * inverse2,
+    };
     configuration.learn(second.direction.clone(), unit);
     let product = arena.constant_sum([[l1, l2, one]]);
     let squares = arena.constant_sum([[l1, l1, one], [l2, l2, one]]);
     let cosine = (square - squares) * over(half, product);
     let sine = h * square * over(one, product);
-    configuration.learn(bend, (cosine, sine));
+    configuration.learn(bend, CosineSine { cosine, sine });
     Some(Reach { radicand })
 }

@@ -5,7 +5,7 @@
 //! derivatives at zero, and the form is confirmed by comparing the two as expressions.
 
 use super::super::configuration::Unknown;
-use crate::cas::{Arena, Expr, Number, Ratio, Substitution, SymbolId};
+use crate::cas::{Arena, CosineSine, Expr, Number, Ratio, Substitution, SymbolId};
 
 /// a c + b s = d, from an equation that is linear in a turn's cosine and sine.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ pub(super) fn linear<'a>(
     equation: Expr<'a>,
     turn: &Unknown,
 ) -> Option<Linear<'a>> {
-    let (c, s) = turn.unit(arena);
+    let CosineSine { cosine: c, sine: s } = turn.unit(arena);
     let symbols = [symbol_of(c)?, symbol_of(s)?];
     let at_zero = |expr: Expr<'a>| at_zero(arena, expr, &symbols);
     let [by_c, by_s] = symbols.map(|symbol| equation.derivative(symbol));
