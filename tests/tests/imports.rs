@@ -9,13 +9,13 @@ use std::{
 };
 
 /// The order of a crate's modules, from the bottom up.
-struct House {
+struct LayerOrder {
     folder: &'static str,
     order: &'static [&'static str],
 }
 
-const HOUSES: [House; 7] = [
-    House {
+const LAYER_ORDERS: [LayerOrder; 7] = [
+    LayerOrder {
         folder: "codegen",
         order: &[
             "parallel",
@@ -31,7 +31,7 @@ const HOUSES: [House; 7] = [
             "evaluation",
             "selection",
             "model",
-            "whole",
+            "total_cost",
             "choice",
             "request",
             "checked",
@@ -42,7 +42,7 @@ const HOUSES: [House; 7] = [
             "internals",
         ],
     },
-    House {
+    LayerOrder {
         folder: "identification",
         order: &[
             "error",
@@ -71,7 +71,7 @@ const HOUSES: [House; 7] = [
             "factors",
         ],
     },
-    House {
+    LayerOrder {
         folder: "simulation",
         order: &[
             "error",
@@ -90,7 +90,7 @@ const HOUSES: [House; 7] = [
             "log",
         ],
     },
-    House {
+    LayerOrder {
         folder: "report",
         order: &[
             "text",
@@ -111,7 +111,7 @@ const HOUSES: [House; 7] = [
             "whole",
         ],
     },
-    House {
+    LayerOrder {
         folder: "robot",
         order: &[
             "counted",
@@ -145,7 +145,7 @@ const HOUSES: [House; 7] = [
             "factors",
         ],
     },
-    House {
+    LayerOrder {
         folder: "interchange",
         order: &[
             "options",
@@ -166,7 +166,7 @@ const HOUSES: [House; 7] = [
             "export",
         ],
     },
-    House {
+    LayerOrder {
         folder: "cli",
         order: &[
             "failure",
@@ -212,14 +212,14 @@ fn crate_of(folder: &'static str) -> &'static [Module] {
 }
 
 /// What is wrong with the imports of a file, by the order of its crate.
-fn wrong(house: &House, module: &Module) -> Vec<String> {
-    let place = |name: &str| house.order.iter().position(|known| *known == name);
+fn wrong(layers: &LayerOrder, module: &Module) -> Vec<String> {
+    let place = |name: &str| layers.order.iter().position(|known| *known == name);
     let own = module.path.first().map_or("", String::as_str);
     let name = module.path.join("/");
     let Some(floor) = place(own) else {
         return vec![format!(
             "`{own}` has no place in the order of {}",
-            house.folder
+            layers.folder
         )];
     };
     let first = module.imports.iter().filter_map(|path| path.first());
@@ -279,15 +279,18 @@ fn circles(modules: &[Module]) -> Vec<(String, BTreeSet<String>)> {
 #[test]
 fn imports_run_downwards() {
     let mut all = Vec::new();
-    for house in &HOUSES {
+    for layers in &LAYER_ORDERS {
         let mut seen = BTreeSet::new();
-        for module in crate_of(house.folder) {
+        for module in crate_of(layers.folder) {
             seen.insert(module.path[0].clone());
-            let complaints = wrong(house, module).into_iter();
-            all.extend(complaints.map(|one| format!("{}: {one}", house.folder)));
+            let complaints = wrong(layers, module).into_iter();
+            all.extend(complaints.map(|one| format!("{}: {one}", layers.folder)));
         }
-        let gone = house.order.iter().filter(|module| !seen.contains(**module));
-        all.extend(gone.map(|module| format!("{}: there is no `{module}`", house.folder)));
+        let gone = layers
+            .order
+            .iter()
+            .filter(|module| !seen.contains(**module));
+        all.extend(gone.map(|module| format!("{}: there is no `{module}`", layers.folder)));
     }
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
@@ -296,7 +299,10 @@ fn imports_run_downwards() {
 fn no_folder_has_a_circle_of_imports() {
     const OTHERS: [&str; 4] = ["core", "runtime", "macros", "xtask"];
     let mut left = BTreeMap::new();
-    let folders = HOUSES.iter().map(|house| house.folder).chain(OTHERS);
+    let folders = LAYER_ORDERS
+        .iter()
+        .map(|layers| layers.folder)
+        .chain(OTHERS);
     for folder in folders {
         for (inside, files) in circles(crate_of(folder)) {
             left.insert(format!("{folder}/{inside}"), files);
@@ -311,12 +317,12 @@ fn no_folder_has_a_circle_of_imports() {
 
 #[test]
 fn an_import_from_above_is_seen() {
-    let house = House {
-        folder: "house",
+    let layers = LayerOrder {
+        folder: "crate",
         order: &["low", "high"],
     };
     let complaints =
-        |text: &str, file: &[&str]| wrong(&house, &Module::of(file, text, &BTreeMap::new())).len();
+        |text: &str, file: &[&str]| wrong(&layers, &Module::of(file, text, &BTreeMap::new())).len();
     assert_eq!(complaints("use crate::{low::A, high::B};", &["high"]), 0);
     assert_eq!(complaints("use crate::{low::A, high::B};", &["low"]), 1);
     assert_eq!(complaints("fn a() { super::high::b(); }", &["low"]), 1);

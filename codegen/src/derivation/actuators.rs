@@ -5,10 +5,10 @@
 //! goes through the platform, τ = τ_own + J⁻ᵀ F. Small square systems are solved by cofactors, without pivots
 //! that could vanish where J is regular. All others are solved by least squares, eqs. (21) and (22).
 
+use super::context::DerivationContext;
 use super::elimination::{Inverse, Rows, inverse};
 use super::linear::{Factored, apply, dot, transposed};
 use super::robot::Robot;
-use super::sheet::Sheet;
 use crate::cas::Expr;
 use overact_core::ActuatorGroup;
 
@@ -111,7 +111,7 @@ impl<'a> ActuatorSystem<'a> {
     }
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// J = J_p^inv, ready to be solved with; what is divided by is guarded.
     pub(super) fn actuator_system(&mut self) -> ActuatorSystem<'a> {
         let jacobian = self.robot.inverse_jacobian();

@@ -1,4 +1,4 @@
-//! What the legs of a platform that moves aside block, and how it moves.
+//! What the legs of a platform with parasitic motion block, and how it moves.
 //!
 //! The platform is derived as a free body, and every leg is closed on it as on any other. A leg with more
 //! shared components than joints leaves rows over: a wrench (a, n) at its end that no joint feels,
@@ -10,7 +10,7 @@ use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::linear::apply;
 use super::names::coordinate_label;
-use super::parasitic::{Aside, BlockedRow, SIX, dependent_components};
+use super::parasitic::{BlockedRow, ParasiticMotion, SIX, dependent_components};
 use super::platform::PlatformPose;
 use super::robot::Robot;
 use super::spatial::SpatialMotion;
@@ -21,12 +21,14 @@ use crate::mechanism::{End, Leg, Motion, TwistCoordinate};
 use nalgebra::DMatrix;
 
 impl<'a> Robot<'a> {
-    /// Of a platform that moves aside, how its velocity follows from the independent coordinates: by those rows
+    /// Of a platform with parasitic motion, how its velocity follows from the independent coordinates: by those rows
     /// that determine the dependent ones best at home.
     ///
     /// # Errors
     /// Rows that do not determine them.
-    pub(super) fn derive_aside(&mut self) -> Result<Option<Aside<'a>>, Underivable> {
+    pub(super) fn derive_parasitic_motion(
+        &mut self,
+    ) -> Result<Option<ParasiticMotion<'a>>, Underivable> {
         let Some(independent) = self.mechanism.independent_coordinates() else {
             return Ok(None);
         };
@@ -38,10 +40,10 @@ impl<'a> Robot<'a> {
         let chosen = best_conditioned(&at_home).into_iter();
         let rows = chosen.map(|row| all[row].clone()).collect();
         let home = |value: Expr<'a>| self.at_home(value);
-        let aside = Aside::new(independent, rows, &home)
+        let parasitic = ParasiticMotion::new(independent, rows, &home)
             .ok_or_else(|| Underivable::SingularHome { leg: String::new() })?;
-        self.guard_coordinates(&aside.solved.determinants);
-        Ok(Some(aside))
+        self.guard_coordinates(&parasitic.solved.determinants);
+        Ok(Some(parasitic))
     }
 
     /// All rows of A.
@@ -79,8 +81,8 @@ impl<'a> Robot<'a> {
 
     /// What is had per component of the platform's velocity, per independent coordinate.
     pub(super) fn on_independent(&self, free: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
-        match &self.aside {
-            Some(aside) => aside.on_independent(&free),
+        match &self.parasitic_motion {
+            Some(parasitic) => parasitic.on_independent(&free),
             None => free,
         }
     }
@@ -91,16 +93,16 @@ impl<'a> Robot<'a> {
         twist: &[Expr<'a>],
         acceleration: &[Expr<'a>],
     ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
-        let (Some(aside), Some(platform)) = (&self.aside, &self.platform) else {
+        let (Some(parasitic), Some(platform)) = (&self.parasitic_motion, &self.platform) else {
             return (twist.to_vec(), acceleration.to_vec());
         };
-        let velocity = aside.velocity(twist);
-        for &at in &aside.dependent {
+        let velocity = parasitic.velocity(twist);
+        for &at in &parasitic.dependent {
             let _ = velocity[at].named(&coordinate_label(&self.free[at]));
         }
         let still = vec![self.arena.zero(); SIX];
         let moved = platform.motion(&velocity, &still);
-        let missing: Vec<Expr<'a>> = aside
+        let missing: Vec<Expr<'a>> = parasitic
             .rows
             .iter()
             .map(|row| {
@@ -118,15 +120,18 @@ impl<'a> Robot<'a> {
                 along
             })
             .collect();
-        let own = apply(&aside.follow, acceleration);
-        let bias = aside.solved.solve(&missing);
+        let own = apply(&parasitic.follow, acceleration);
+        let bias = parasitic.solved.solve(&missing);
         let others: Vec<Expr<'a>> = own.iter().zip(&bias).map(|(a, b)| *a + *b).collect();
-        (velocity, aside.together(acceleration, &others))
+        (velocity, parasitic.together(acceleration, &others))
     }
 
     /// By how much the pose misses what the legs allow: for each row of A, with the leg.
     pub(super) fn blocked_errors(&self) -> Vec<(Expr<'a>, usize)> {
-        let rows = self.aside.iter().flat_map(|aside| &aside.rows);
+        let rows = self
+            .parasitic_motion
+            .iter()
+            .flat_map(|parasitic| &parasitic.rows);
         let errors = rows.filter_map(|row| {
             let leg = row.leg;
             let state = &self.legs[leg];
@@ -157,7 +162,10 @@ impl<'a> Robot<'a> {
 
     /// The conditions on which coordinates of the pose are zero, as those that legs allow are.
     pub(super) fn still_guards(&self, still: &[usize]) -> Vec<Guard<'a>> {
-        let rows = self.aside.iter().flat_map(|aside| &aside.rows);
+        let rows = self
+            .parasitic_motion
+            .iter()
+            .flat_map(|parasitic| &parasitic.rows);
         let leg = rows.map(|row| self.mechanism.legs[row.leg].name.clone());
         let leg = leg.min().unwrap_or_default();
         let scale = self.mechanism.length_scale().max(1e-3);

@@ -226,11 +226,11 @@ pub(crate) fn leg_bodies<'a>(
             partial
         });
         let partials = partials.collect();
-        let carried = |l: &Lever<'a>| Lever {
+        let moved = |l: &Lever<'a>| Lever {
             vector: turn.apply(l.vector + link),
             axes: l.axes.clone(),
         };
-        let mut levers: Vec<Lever<'a>> = from.levers.iter().map(carried).collect();
+        let mut levers: Vec<Lever<'a>> = from.levers.iter().map(moved).collect();
         levers.extend(first_levers(arena, state, index));
         bodies.push(BodyMotion::new(
             omega,

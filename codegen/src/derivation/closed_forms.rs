@@ -62,7 +62,7 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     pose
 }
 
-/// A displaced pose that the legs allow: of a platform that moves aside, one that was brought back onto them.
+/// A displaced pose that the legs allow: of a platform with parasitic motion, one that was brought back onto them.
 fn allowed(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     if !mechanism.is_parasitic() {
         return displaced(mechanism, number);

@@ -103,14 +103,14 @@ impl<'a> Robot<'a> {
     ) -> Option<Chain<'_, 'a>> {
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let on_platform = matches!(leg.end, Some(End::Rigid(_))) && leg.end_body.is_none();
-        let carried = on_platform.then(|| leg.joints.len() - 1);
+        let on_platform = on_platform.then(|| leg.joints.len() - 1);
         let mut links = Vec::new();
         for j in 0..leg.joints.len() {
             let own = |p: BodyParameter| p.of_joint(index, j);
             let motor = values
                 .iter()
                 .filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
-            let body = if carried == Some(j) {
+            let body = if on_platform == Some(j) {
                 Inertia::zero(arena)
             } else {
                 Inertia::of(arena, values, &own)

@@ -1,19 +1,19 @@
-//! Dynamics of the whole robot on a sheet: columns of identification models, projections of torques, and
+//! Dynamics of the whole robot on a context: columns of identification models, projections of torques, and
 //! inverse dynamics with given parameters.
 
 use super::actuators::OwnForces;
+use super::context::{DerivationContext, column};
 use super::elimination::{Rows, inverse};
 use super::linear::{apply, product, transposed};
 use super::null_space::null_space;
 use super::parameter::BodyParameter;
 use super::regressor::Projection;
 use super::selection::DynamicsBy;
-use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::{Expr, Number};
 use overact_core::{ActuatorGroup, Columns, Input};
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// The parameters of a form's columns.
     pub(super) fn chosen(&self, columns: Columns) -> Vec<BodyParameter> {
         match columns {
@@ -180,7 +180,7 @@ impl<'a> Sheet<'a, '_> {
     /// on the kept actuators alone, which move the robot, N (c - Nᵀ p) makes those.
     ///
     /// # Errors
-    /// See [`Sheet::null_space`].
+    /// See [`DerivationContext::null_space`].
     pub(super) fn preloaded_torques(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
         let forces = self.projected_dynamics(Columns::Standard, &twist, &acceleration);

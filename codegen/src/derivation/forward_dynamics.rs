@@ -5,14 +5,14 @@
 //! M and h together, which would be computed three times otherwise. A pivot that is not positive means that
 //! the parameters are of no real robot.
 
+use super::context::DerivationContext;
 use super::guard::{Guard, GuardKind};
 use super::linear::Factored;
 use super::names::name_matrix;
-use super::sheet::Sheet;
 use crate::cas::Expr;
 use overact_core::Columns;
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// v̇ = M⁻¹ (Γ¹(τ) - h).
     pub(super) fn forward_dynamics(&mut self, of: Columns, n: usize) -> Vec<Expr<'a>> {
         let twist = self.twist();

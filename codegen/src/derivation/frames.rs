@@ -3,7 +3,7 @@
 
 use super::configuration::Configuration;
 use super::joint::{joint_turn, link_vector};
-use super::orientation::{Orientation, Seat};
+use super::orientation::{ObserverFrame, Orientation};
 use crate::cas::{Arena, Direction, Matrix3, Number, Vector3};
 use crate::mechanism::{JointKind, Leg};
 
@@ -42,26 +42,26 @@ pub struct LegFrames<'a> {
 }
 
 impl<'a> LegFrames<'a> {
-    /// Frames of all joints in the axes of the station of that number ([`Orientation::stations`]; 0
-    /// is the base), or of the seat for 0 where there is one. `None` if there is no such station or a sine
-    /// or cosine does not follow from the configuration.
+    /// Frames of all joints in the axes of one frame on the path ([`Orientation::intermediate_frames`]); 0 is the
+    /// base, or the observer's frame if there is one. `None` if there is no such frame, or a sine or cosine does not
+    /// follow from the configuration.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
         leg: &Leg,
         first_joint: usize,
         configuration: &Configuration<'a>,
-        station: usize,
-        seat: Option<&Seat>,
+        closure_frame: usize,
+        observer_frame: Option<&ObserverFrame>,
     ) -> Option<Self> {
         let orientations = Orientation::of_leg(leg, first_joint, configuration)?;
-        let whole = |of: &Orientation| match seat {
-            Some(seat) => seat.from.followed_by(of),
+        let whole = |of: &Orientation| match observer_frame {
+            Some(observer_frame) => observer_frame.from.followed_by(of),
             None => Some(of.clone()),
         };
-        let axes = match seat {
-            Some(seat) if station == 0 => seat.axes.clone(),
-            _ => whole(Orientation::stations(&orientations).get(station)?)?,
+        let axes = match observer_frame {
+            Some(observer_frame) if closure_frame == 0 => observer_frame.axes.clone(),
+            _ => whole(Orientation::intermediate_frames(&orientations).get(closure_frame)?)?,
         };
         let in_axes = |of: &Orientation| whole(of)?.relative(&axes, arena, configuration);
         let base = in_axes(&Orientation::fixed(leg.base.rotation))?;
@@ -84,7 +84,9 @@ impl<'a> LegFrames<'a> {
                 origin,
             });
         }
-        let seen_from = seat.map_or_else(Orientation::default, |seat| seat.axes.clone());
+        let seen_from = observer_frame.map_or_else(Orientation::default, |observer_frame| {
+            observer_frame.axes.clone()
+        });
         Some(Self {
             frames,
             axes: axes.relative(&seen_from, arena, configuration)?,
@@ -92,19 +94,18 @@ impl<'a> LegFrames<'a> {
         })
     }
 
-    /// Writes the orientations of a leg's frames in the axes in which its closure is seen, so that what turns out to
-    /// be a direction of a link over a divisor is known as one. `None` where one does not follow from the
-    /// configuration.
-    pub(super) fn write_in_seat(
+    /// Expresses the orientations of a leg's frames in the observer's axes, so that directions of links over a divisor
+    /// are recognised later. `None` if one does not follow from the configuration.
+    pub(super) fn express_in_observer_frame(
         arena: &'a Arena,
         leg: &Leg,
         first_joint: usize,
         configuration: &Configuration<'a>,
-        seat: &Seat,
+        observer_frame: &ObserverFrame,
     ) -> Option<()> {
         for of in Orientation::of_leg(leg, first_joint, configuration)? {
-            let whole = seat.from.followed_by(&of)?;
-            let _ = whole.relative(&seat.axes, arena, configuration)?;
+            let whole = observer_frame.from.followed_by(&of)?;
+            let _ = whole.relative(&observer_frame.axes, arena, configuration)?;
         }
         Some(())
     }

@@ -1,5 +1,6 @@
 //! The functions that every robot has, as named inputs and output expressions.
 
+use super::context::{DerivationContext, column};
 use super::divisors;
 use super::elimination::Rows;
 use super::forward_kinematics::closed_form;
@@ -7,7 +8,6 @@ use super::function_form::FunctionForm;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
 use super::selection::{JointsBy, Selection};
-use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
 use crate::mechanism::Mechanism;
@@ -62,8 +62,8 @@ pub fn derive<'a>(
         pose_in_closed_form(arena, mechanism)?
     } else {
         let form = FunctionForm { function, from };
-        on_sheet(arena, mechanism, selection, form, |sheet| {
-            sheet.rows(function)
+        derive_with(arena, mechanism, selection, form, |context| {
+            context.rows(function)
         })?
     };
     with_divisors(arena, mechanism, derived)
@@ -92,12 +92,12 @@ pub(super) fn with_divisors<'a>(
 }
 
 /// A function of the configuration, or what `rows` make of it.
-pub(super) fn on_sheet<'a, 's>(
+pub(super) fn derive_with<'a, 's>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &'s Selection,
     form: FunctionForm,
-    rows: impl FnOnce(&mut Sheet<'a, 's>) -> Result<Rows<'a>, Underivable>,
+    rows: impl FnOnce(&mut DerivationContext<'a, 's>) -> Result<Rows<'a>, Underivable>,
 ) -> Result<Derived<'a>, Underivable> {
     let FunctionForm { function, from } = form;
     // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
@@ -108,12 +108,12 @@ pub(super) fn on_sheet<'a, 's>(
     } else {
         &mechanism.still
     };
-    let mut sheet = Sheet::new(arena, mechanism, selection, from, still)?;
-    let rows = rows(&mut sheet)?;
-    sheet.robot.give_names();
+    let mut context = DerivationContext::new(arena, mechanism, selection, from, still)?;
+    let rows = rows(&mut context)?;
+    context.robot.give_names();
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
-    let mut guards = sheet.robot.guards.clone();
-    guards.extend(sheet.guards);
+    let mut guards = context.robot.guards.clone();
+    guards.extend(context.guards);
     // Where Newton's method finds the joints, functions from the pose call those from the joints.
     let is_of_pose = match selection.joints {
         JointsBy::Newton => from != MotionInput::Actuators,
@@ -121,16 +121,16 @@ pub(super) fn on_sheet<'a, 's>(
     };
     // What is at zero otherwise misses more there than anything that follows from it.
     if from != MotionInput::Actuators {
-        guards.extend(sheet.robot.still_guards(still));
+        guards.extend(context.robot.still_guards(still));
     }
     if is_of_pose && !brings_back && !closes {
-        guards.extend(sheet.robot.closed_guards());
+        guards.extend(context.robot.closed_guards());
     }
     if brings_back {
         guards.retain(|guard| !matches!(guard.kind, GuardKind::Coordinates(_)));
     }
     Ok(Derived {
-        inputs: sheet.inputs,
+        inputs: context.inputs,
         shape,
         entries: rows.concat(),
         guards,
@@ -158,7 +158,7 @@ fn pose_in_closed_form<'a>(
     })
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// What each function is made of, row by row.
     fn rows(&mut self, function: Function) -> Result<Rows<'a>, Underivable> {
         let n = self.robot.mechanism.actuated().len();

@@ -1,14 +1,14 @@
-//! Kinematics of the whole robot on a sheet: positions and rates of joints, and what follows from the
+//! Kinematics of the whole robot on a context: positions and rates of joints, and what follows from the
 //! actuators by least squares.
 
+use super::context::DerivationContext;
 use super::elimination::Rows;
 use super::motion_input::MotionInput;
 use super::names::coordinate_label;
-use super::sheet::Sheet;
 use crate::cas::Expr;
 use crate::mechanism::{JointIndex, JointKind};
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
     /// that fit the actuators' rates best.
     pub(super) fn twist(&mut self) -> Vec<Expr<'a>> {

@@ -7,8 +7,28 @@ use super::elimination::Rows;
 use super::frames::LegFrames;
 use super::platform::{PlatformMotion, PlatformPose};
 use super::rates::Rates;
+use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{End, Leg};
+
+/// Gravity as the acceleration -g of the ground, for one leg.
+#[derive(Debug, Default)]
+pub(super) struct LegGravity<'a> {
+    /// The acceleration that the closure takes into account; `None` if the closure leaves gravity out.
+    pub(super) ground: Option<GroundAcceleration<'a>>,
+    /// The acceleration in the observer's axes, to add to that of the leg's end if a mass is there. `None` of a leg that
+    /// stands on a moving body, and where there are no such masses.
+    pub(super) end_offset: Option<Vector3<'a>>,
+}
+
+/// The acceleration -g of the ground in two sets of axes.
+#[derive(Debug)]
+pub(super) struct GroundAcceleration<'a> {
+    /// In the axes in which the closure sees the body at the leg's end.
+    pub(super) in_observer_axes: Vector3<'a>,
+    /// In the axes of the leg.
+    pub(super) in_leg_axes: Vector3<'a>,
+}
 
 /// A leg in a derivation.
 #[derive(Debug)]
@@ -25,52 +45,47 @@ pub struct LegState<'a> {
     pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
-    /// Acceleration of the ground less gravity, in the axes in which the closure sees what the leg ends on and in
-    /// those of the leg, where the end's acceleration is taken so.
-    pub(super) ground: Option<[Vector3<'a>; 2]>,
-    /// The ground's acceleration less gravity in the axes in which the closure sees what the leg ends on, where masses at
-    /// the leg's end are told there; `None` of a leg that stands on a moving body.
-    pub(super) lift: Option<Vector3<'a>>,
+    /// Gravity, for a leg that stands on the ground.
+    pub(super) gravity: LegGravity<'a>,
     /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body those of the leg follow that
     /// carries it, whose quasi-velocities move its bodies, too.
     pub rows: Rows<'a>,
 }
 
 impl<'a> LegState<'a> {
-    /// The motion of what the leg ends on, less gravity where it is taken so.
+    /// The motion of what the leg ends on, with gravity as an acceleration if the closure takes it into account.
     pub(super) fn less_gravity(&self, end: PlatformMotion<'a>) -> PlatformMotion<'a> {
-        match self.ground {
-            Some([ground, _]) => PlatformMotion {
-                acceleration: end.acceleration + ground,
+        match &self.gravity.ground {
+            Some(ground) => PlatformMotion {
+                acceleration: end.acceleration + ground.in_observer_axes,
                 ..end
             },
             None => end,
         }
     }
 
-    /// The acceleration less gravity of a leg's end, from that of what it ends on, [`less gravity`](Self::less_gravity)
-    /// where it is taken so: where masses there are told as those of a point of it.
+    /// The acceleration less gravity of a leg's end, for a mass that is there; `end` is [`less_gravity`](Self::less_gravity).
     pub(super) fn end_less_gravity(
         &self,
         leg: &Leg,
         end: &PlatformMotion<'a>,
     ) -> Option<Vector3<'a>> {
-        let (closure, lift) = (self.closure.as_ref()?, self.lift?);
+        let (closure, offset) = (self.closure.as_ref()?, self.gravity.end_offset?);
         let Some(End::Point { along, .. }) = &leg.end else {
             return None;
         };
         let there = end.point_acceleration(closure.at, closure.arm);
-        let is_less = self.ground.is_some();
-        (*along == [true; 3]).then(|| if is_less { there } else { there + lift })
+        let has_gravity = self.gravity.ground.is_some();
+        (*along == [true; 3]).then(|| if has_gravity { there } else { there + offset })
     }
 
-    /// The acceleration of the leg's end at u̇ = 0, less gravity where that of what it ends on is.
+    /// The acceleration of the leg's end at u̇ = 0, less gravity if the closure takes it into account.
     pub(super) fn bias(&self, arena: &'a Arena, leg: &Leg, u: &[Expr<'a>]) -> Vec<BiasTerm<'a>> {
         let mut terms = end_bias(arena, leg, &self.frames, &self.rates, u);
-        terms.extend(self.ground.map(|[_, ground]| BiasTerm {
+        terms.extend(self.gravity.ground.as_ref().map(|ground| BiasTerm {
             scalar: arena.one(),
             acceleration: SpatialMotion {
-                linear: ground,
+                linear: ground.in_leg_axes,
                 angular: Vector3::zero(arena),
             },
         }));

@@ -6,10 +6,10 @@ use super::closure::{ClosureRows, LegClosure, split_rows};
 use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
-use super::leg::LegState;
+use super::leg::{GroundAcceleration, LegGravity, LegState};
 use super::motion_input::MotionInput;
-use super::orientation::{Orientation, Seat};
-use super::path::{Known, Path, orientation, seats};
+use super::orientation::{ObserverFrame, Orientation};
+use super::path::{Known, Path, observer_frames, orientation};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::robot::{Robot, name_rows};
@@ -36,15 +36,15 @@ impl<'a> Robot<'a> {
         if let Some(platform) = &platform {
             self.solve_joints(index, platform)?;
         }
-        let seat = self.seat_of(index, formulation);
-        let platform = match &seat {
-            Some(seat) => self.end_seen(index, &seat.axes),
+        let observer = self.observer_frame_of(index, formulation);
+        let platform = match &observer {
+            Some(observer) => self.end_seen(index, &observer.axes),
             None => platform,
         };
-        let seen = seat.as_ref();
-        let frames = self.frames_of(index, seen, formulation)?;
+        let observer = observer.as_ref();
+        let frames = self.frames_of(index, observer, formulation)?;
         let rates = Rates::new(leg, platform.is_some());
-        let (ground, lift) = self.levels(leg, &frames, seen, formulation);
+        let gravity = self.gravity_of(leg, &frames, observer, formulation);
         let centres = if formulation.meeting {
             centres(leg, &rates)
         } else {
@@ -74,8 +74,7 @@ impl<'a> Robot<'a> {
             centres,
             platform,
             closure,
-            ground,
-            lift,
+            gravity,
             rows,
         });
         arena.enter("");
@@ -110,49 +109,68 @@ impl<'a> Robot<'a> {
     fn frames_of(
         &self,
         index: usize,
-        seen: Option<&Seat>,
+        observer: Option<&ObserverFrame>,
         formulation: &Formulation,
     ) -> Result<LegFrames<'a>, Underivable> {
         let (arena, configuration) = (self.arena, &self.configuration);
         let leg = &self.mechanism.legs[index];
         let first_joint = self.mechanism.leg_range(index).start;
-        if let Some(seat) = seen.filter(|_| formulation.over_divisors) {
-            let _ = LegFrames::write_in_seat(arena, leg, first_joint, configuration, seat);
+        if let Some(observer) = observer.filter(|_| formulation.over_divisors) {
+            let _ = LegFrames::express_in_observer_frame(
+                arena,
+                leg,
+                first_joint,
+                configuration,
+                observer_frame,
+            );
         }
-        let station = formulation.stations.get(index).copied().unwrap_or_default();
-        let frames = LegFrames::new(arena, leg, first_joint, configuration, station, seen);
+        let closure_frame = formulation
+            .closure_frames
+            .get(index)
+            .copied()
+            .unwrap_or_default();
+        let frames = LegFrames::new(
+            arena,
+            leg,
+            first_joint,
+            configuration,
+            closure_frame,
+            observer,
+        );
         frames.ok_or_else(|| Underivable::InverseKinematics {
             leg: leg.name.clone(),
         })
     }
 
-    /// The acceleration of the ground less gravity, of a leg that stands on it: in the axes in which the closure sees
-    /// what the leg ends on and in those of the leg, where the end's is taken so; and in the first ones, where masses
-    /// at the leg's end are counted there.
-    fn levels(
+    /// Gravity as an acceleration of the ground, for a leg that stands on it.
+    fn gravity_of(
         &self,
         leg: &Leg,
         frames: &LegFrames<'a>,
-        seat: Option<&Seat>,
+        observer: Option<&ObserverFrame>,
         formulation: &Formulation,
-    ) -> (Option<[Vector3<'a>; 2]>, Option<Vector3<'a>>) {
-        let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+    ) -> LegGravity<'a> {
         if leg.base_body.is_some() {
-            return (None, None);
+            return LegGravity::default();
         }
-        let level = |axes: &Orientation| {
-            let level = Orientation::default().relative(axes, self.arena, &self.configuration)?;
-            Some(-(level * gravity))
+        let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let in_axes = |axes: &Orientation| {
+            let turn = Orientation::default().relative(axes, self.arena, &self.configuration)?;
+            Some(-(turn * gravity))
         };
-        let weighted = seat.filter(|_| formulation.weighted);
-        let ground =
-            weighted.and_then(|seat| Some([level(&seat.axes)?, level(&frames.orientation)?]));
-        let lift = match seat {
+        let observer_of_ground = observer.filter(|_| formulation.gravity_as_acceleration);
+        let ground = observer_of_ground.and_then(|observer| {
+            Some(GroundAcceleration {
+                in_observer_axes: in_axes(&observer.axes)?,
+                in_leg_axes: in_axes(&frames.orientation)?,
+            })
+        });
+        let end_offset = match observer {
             _ if !formulation.masses_at_ends => None,
-            Some(seat) => level(&seat.axes),
+            Some(observer) => in_axes(&observer.axes),
             None => Some(-gravity),
         };
-        (ground, lift)
+        LegGravity { ground, end_offset }
     }
 
     /// The closure of a leg on what it ends on.
@@ -191,15 +209,19 @@ impl<'a> Robot<'a> {
     }
 
     /// The axes in which a chain's closure is seen, where they are chosen.
-    fn seat_of(&self, index: usize, formulation: &Formulation) -> Option<Seat> {
-        let seat = formulation.seats.get(index).copied().unwrap_or_default();
-        if seat == 0 {
+    fn observer_frame_of(&self, index: usize, formulation: &Formulation) -> Option<ObserverFrame> {
+        let observer_frame = formulation
+            .observer_frames
+            .get(index)
+            .copied()
+            .unwrap_or_default();
+        if observer_frame == 0 {
             return None;
         }
-        let all = seats(self.mechanism, &self.configuration, index)?;
-        Some(Seat {
+        let all = observer_frames(self.mechanism, &self.configuration, index)?;
+        Some(ObserverFrame {
             from: all.first()?.clone(),
-            axes: all.get(seat)?.clone(),
+            axes: all.get(observer_frame)?.clone(),
         })
     }
 

@@ -4,13 +4,13 @@
 //! in a point and feels no moment there has the rows of G from forces f_i at that point: it is then a mass
 //! tensor Λ = Σ f_i M_ij f_jᵀ at the arm p, whose parts on the twist are Λ, Λ [p]×ᵀ and [p]× Λ [p]×ᵀ.
 
-use super::carried::Mount;
 use super::closure::LegClosure;
 use super::elimination::Rows;
 use super::inertia::Inertia;
 use super::linear::{dot, transposed};
 use super::names::{Names, name_matrix};
 use super::parameter::BodyParameter;
+use super::platform_body::Mount;
 use super::robot::Robot;
 use crate::cas::{Expr, Matrix3, Vector3};
 use crate::mechanism::TwistCoordinate;
@@ -30,7 +30,7 @@ impl<'a> Robot<'a> {
         let dof = self.mechanism.dof();
         let square = |size: usize| vec![vec![self.arena.zero(); size]; size];
         let mut sum = square(dof);
-        // Of a platform that moves aside: what is had per component of its velocity.
+        // Of a platform that moves parasitic_motion: what is had per component of its velocity.
         let mut free = square(self.free.len());
         for (index, state) in self.legs.iter().enumerate() {
             let name = &self.mechanism.legs[index].name;
@@ -51,7 +51,7 @@ impl<'a> Robot<'a> {
                 Some(closure) => {
                     let tensor = closure.mass_at_end(&masses);
                     let entry = on_twist(&self.free, tensor, closure.arm);
-                    if self.aside.is_some() {
+                    if self.parasitic_motion.is_some() {
                         add(&mut free, &entry)
                     } else {
                         add(&mut sum, &entry)
@@ -69,21 +69,24 @@ impl<'a> Robot<'a> {
         }
         self.arena.enter("platform");
         if let Some(entry) = self.platform_masses(values) {
-            if self.aside.is_some() {
+            if self.parasitic_motion.is_some() {
                 add(&mut free, &entry)
             } else {
                 add(&mut sum, &entry)
             }
         }
-        if let Some(aside) = &self.aside {
+        if let Some(parasitic) = &self.parasitic_motion {
             let size = free.len();
             let entry = |a: usize, b: usize| free[a.min(b)][a.max(b)];
             let rows = (0..size).map(|a| {
                 let row: Vec<Expr<'a>> = (0..size).map(|b| entry(a, b)).collect();
-                aside.on_independent(&row)
+                parasitic.on_independent(&row)
             });
             let columns = transposed(&rows.collect());
-            let both: Rows<'a> = columns.iter().map(|c| aside.on_independent(c)).collect();
+            let both: Rows<'a> = columns
+                .iter()
+                .map(|c| parasitic.on_independent(c))
+                .collect();
             add(&mut sum, &|a, b| both[b][a]);
         }
         self.arena.enter("");

@@ -1,12 +1,12 @@
 //! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
 
 use super::blocked::placement_error;
+use super::context::{DerivationContext, column};
 use super::elimination::{Rows, inverse};
 use super::frames::independent_columns;
-use super::sheet::{Sheet, column};
 use crate::cas::Expr;
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
     pub(super) fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
@@ -74,10 +74,12 @@ impl<'a> Sheet<'a, '_> {
         column(errors)
     }
 
-    /// D, of a platform that moves aside.
+    /// D, of a platform with parasitic motion.
     pub(super) fn platform_jacobian(&mut self) -> Rows<'a> {
-        let aside = self.robot.aside.as_ref();
-        aside.map_or_else(Vec::new, |aside| aside.platform_jacobian(self.robot.arena))
+        let parasitic = self.robot.parasitic_motion.as_ref();
+        parasitic.map_or_else(Vec::new, |parasitic| {
+            parasitic.platform_jacobian(self.robot.arena)
+        })
     }
 
     /// By how much a pose misses what the legs allow.
@@ -88,8 +90,8 @@ impl<'a> Sheet<'a, '_> {
 
     /// A of A t = 0.
     pub(super) fn blocked_jacobian(&mut self) -> Rows<'a> {
-        let aside = self.robot.aside.as_ref();
-        aside.map_or_else(Vec::new, |aside| aside.matrix.clone())
+        let parasitic = self.robot.parasitic_motion.as_ref();
+        parasitic.map_or_else(Vec::new, |parasitic| parasitic.matrix.clone())
     }
 
     /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.

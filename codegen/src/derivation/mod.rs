@@ -8,7 +8,7 @@
 //! `parasitic` and `blocked` have platforms whose legs block directions that change with the pose. `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
 //! actuators, eq. (36). `robot` holds one derivation together. `inverse_kinematics` finds joints from a pose
 //! and `forward_kinematics` a pose from actuators, in closed form where there is one. `functions` says what
-//! each function is made of, on a `sheet`: its `kinematics`, its `dynamics`, the systems between platform and
+//! each function is made of, on a `context`: its `kinematics`, its `dynamics`, the systems between platform and
 //! `actuators`, and the `matrices` of the
 //! closure equations.
 
@@ -18,7 +18,7 @@ mod actuators;
 mod bias;
 mod blocked;
 mod body;
-mod carried;
+
 mod centres;
 #[cfg(test)]
 mod closed_forms;
@@ -26,6 +26,7 @@ mod closure;
 mod composite;
 mod configuration;
 mod constant_columns;
+mod context;
 mod derivable;
 mod divisors;
 mod dynamics;
@@ -58,12 +59,13 @@ mod parameter;
 mod parasitic;
 mod path;
 mod platform;
+mod platform_body;
 mod pose_step;
 mod rates;
 mod regressor;
 mod robot;
 mod selection;
-mod sheet;
+
 mod spatial;
 mod spring;
 mod sums;
@@ -79,9 +81,9 @@ pub(crate) use inventory::sources;
 pub use inventory::{function_name, inventory};
 pub(crate) use inverse_kinematics::working_modes;
 pub use motion_input::MotionInput;
-pub(crate) use orientation::{is_whole, station_choices};
+pub(crate) use orientation::{closure_frame_choices, may_use_any_axes};
 pub use parameter::BodyParameter;
-pub(crate) use path::seat_choices;
+pub(crate) use path::observer_frame_choices;
 pub use selection::{Combination, DynamicsBy, Formulation, JointsBy, Selection};
 pub(crate) use sums::{Addends, LegRowLayout, ROWS, SUMS};
 pub(crate) use sums::{derive_addends, derive_of_rows, derive_of_sums};

@@ -1,9 +1,9 @@
 //! The motion of the whole robot: quasi-velocities, bodies, platform.
 
 use super::body::BodyMotion;
-use super::carried::CarriedBody;
 use super::names::Accelerations;
 use super::platform::PlatformMotion;
+use super::platform_body::PlatformBody;
 use crate::cas::{Expr, Vector3};
 
 /// Velocities and accelerations of the whole robot.
@@ -16,12 +16,12 @@ pub struct RobotMotion<'a> {
     /// Bodies of every leg.
     pub bodies: Vec<Vec<BodyMotion<'a>>>,
     /// Those bodies of every leg that move with the platform.
-    pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
+    pub platform_bodies: Vec<Vec<Option<PlatformBody<'a>>>>,
     /// Of every leg the acceleration of its end less gravity, where masses there are told as those of a point of what
     /// it ends on.
     pub(super) ends: Vec<Option<Vector3<'a>>>,
     /// The platform.
-    pub platform: Option<CarriedBody<'a>>,
+    pub platform: Option<PlatformBody<'a>>,
 }
 
 /// A motion that was derived.

@@ -31,10 +31,10 @@ impl<'a> Robot<'a> {
         actuators: &mut OwnForces<'a>,
     ) -> Option<Vec<Expr<'a>>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
-        // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
+        // Of a platform that moves parasitic_motion: what all put on its six components, which goes to the others at once.
         let mut free = vec![self.arena.zero(); self.free.len()];
-        let partials = self.aside.as_ref().filter(|_| self.by_ends);
-        let partials = partials.map(|aside| aside.partials(self.arena));
+        let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|parasitic| parasitic.partials(self.arena));
         let mut hung = Hung::nothing(self.arena, &self.mechanism.legs);
         let of_legs = self.forces_of_legs(motion, values, &mut hung)?.into_iter();
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
@@ -51,7 +51,7 @@ impl<'a> Robot<'a> {
                     let on_ends = partials.as_ref();
                     match on_ends.map(|partials| closure.project_on(partials, &forces)) {
                         Some(own) => add(&mut total, own),
-                        None if self.aside.is_some() => {
+                        None if self.parasitic_motion.is_some() => {
                             add(&mut free, closure.project_at_end(&forces));
                         }
                         None => add(&mut total, closure.project_at_end(&forces)),
@@ -73,14 +73,14 @@ impl<'a> Robot<'a> {
                 let what = format!("force_on_{}_platform", coordinate_label(coordinate));
                 let _ = force.named(&what);
             }
-            if self.aside.is_some() {
+            if self.parasitic_motion.is_some() {
                 add(&mut free, on_twist)
             } else {
                 add(&mut total, on_twist)
             }
         }
-        if let Some(aside) = &self.aside {
-            add(&mut total, aside.on_independent(&free));
+        if let Some(parasitic) = &self.parasitic_motion {
+            add(&mut total, parasitic.on_independent(&free));
         }
         self.arena.enter("");
         Some(total)
@@ -119,10 +119,10 @@ impl<'a> Robot<'a> {
         let chain = self.chain(index, values)?;
         let mut bodies = chain.bodies();
         hung.add_to(index, &mut bodies);
-        if self.lends
-            && let Some(lent) = chain.lend(&mut bodies)
+        if self.lump_end_masses
+            && let Some(end_mass) = chain.take_end_mass(&mut bodies)
         {
-            hung.lend(leg, &lent);
+            hung.add_end_mass(leg, &end_mass);
         }
         let kept = chain.group(&mut bodies, leg.base_body.is_some());
         let count = leg.joints.len();
@@ -130,8 +130,8 @@ impl<'a> Robot<'a> {
         let mut about_axes = Vec::new();
         for (joint, body) in bodies.iter().enumerate() {
             let own = motion.bodies[index][joint].wrench(body);
-            let carried = hung.wrenches[index][joint];
-            let wrench = own.plus(&carried);
+            let suspended = hung.wrenches[index][joint];
+            let wrench = own.plus(&suspended);
             about_axes.push(wrench.moment.z());
             wrenches.push(wrench);
         }
@@ -207,14 +207,13 @@ impl<'a> Hung<'a> {
     }
 
     /// Counts a mass at the point where a leg ends to what it ends on.
-    fn lend(&mut self, leg: &Leg, lent: &Inertia<'a>) {
+    fn add_end_mass(&mut self, leg: &Leg, end_mass: &Inertia<'a>) {
         let onto = match leg.end_body {
-            Some(body) => {
-                self.inertias[body.leg][body.joint].get_or_insert(Inertia::zero(lent.mass.arena()))
-            }
+            Some(body) => self.inertias[body.leg][body.joint]
+                .get_or_insert(Inertia::zero(end_mass.mass.arena())),
             None => &mut self.on_platform,
         };
-        *onto = with(lent, onto);
+        *onto = with(end_mass, onto);
     }
 
     /// Puts what a leg's first joints leave as it is, and the wrench at its base, on the body that it stands on.
@@ -249,7 +248,7 @@ impl<'a> BodyMotion<'a> {
 impl<'a> Chain<'_, 'a> {
     /// Takes from the last body of a leg that ends in a point the mass that leaves it no first moment towards that
     /// point, and gives it in the frame of what the leg ends on, where it is at the same place.
-    fn lend(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
+    fn take_end_mass(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
         let Some(End::Point {
             at,
             along: [true, true, true],
@@ -284,7 +283,7 @@ impl<'a> Chain<'_, 'a> {
 
     /// Moves what each joint leaves as it is onto the body before it; what the first ones leave, in the axes of
     /// the leg's base, where that moves.
-    fn group(&self, bodies: &mut [Inertia<'a>], is_carried: bool) -> Inertia<'a> {
+    fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
         let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {
             let [kept, rest] = match self.kind(j) {
@@ -295,7 +294,7 @@ impl<'a> Chain<'_, 'a> {
             bodies[j] = rest;
             match self.antecedent(j) {
                 Some(before) => bodies[before] = self.moved_onto(&kept, &bodies[before], j),
-                None if is_carried => at_base = self.moved_onto(&kept, &at_base, j),
+                None if is_on_moving_base => at_base = self.moved_onto(&kept, &at_base, j),
                 None => {}
             }
         }

@@ -83,19 +83,19 @@ impl Orientation {
         )
     }
 
-    /// The frames that can be met on the way from the base to a leg's frames, the base frame first.
+    /// All frames on the paths from the base to a leg's frames, the base frame first.
     #[must_use]
-    pub(crate) fn stations(frames: &[Self]) -> Vec<Self> {
-        let mut stations: Vec<Self> = Vec::new();
+    pub(crate) fn intermediate_frames(frames: &[Self]) -> Vec<Self> {
+        let mut frames_on_path: Vec<Self> = Vec::new();
         for frame in frames {
             for length in 0..=frame.0.len() {
-                let station = Self(frame.0[..length].to_vec());
-                if !stations.contains(&station) {
-                    stations.push(station);
+                let prefix = Self(frame.0[..length].to_vec());
+                if !frames_on_path.contains(&prefix) {
+                    frames_on_path.push(prefix);
                 }
             }
         }
-        stations
+        frames_on_path
     }
 
     /// The orientation of `self` in the frame `from`; `None` if a sine or cosine does not follow from
@@ -126,28 +126,28 @@ impl Orientation {
     }
 }
 
-/// The axes in which a chain's closure sees what it ends on, where they are not those of the body that it starts
-/// from: both as orientations in the robot's base frame.
+/// The axes in which a chain's closure sees the body at its end, if they are not those of the body at its start.
+/// Orientations are those in the robot's base frame.
 #[derive(Debug)]
-pub(super) struct Seat {
+pub(super) struct ObserverFrame {
     /// Of the body that the chain starts from.
     pub(super) from: Orientation,
     /// Of the axes.
     pub(super) axes: Orientation,
 }
 
-/// The stations that a leg has to choose axes from, by number. Only the base, if the closure is of some components
-/// of the end's velocity or angular velocity alone that others of the axes mix with the rest.
+/// The numbers of the frames in whose axes a leg's closure may be written. The base alone, if the closure uses only
+/// some components of a velocity and other axes would mix them with the rest.
 #[must_use]
-pub(crate) fn station_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
+pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
-        .map(|frames| Orientation::stations(&frames))
-        .filter(|stations| keep_rows(mechanism, leg, &arena, &configuration, stations))
-        .map_or(vec![0], |stations| {
-            distinct(&stations, &arena, &configuration)
+        .map(|frames| Orientation::intermediate_frames(&frames))
+        .filter(|frames_on_path| keep_rows(mechanism, leg, &arena, &configuration, frames_on_path))
+        .map_or(vec![0], |frames_on_path| {
+            distinct(&frames_on_path, &arena, &configuration)
         })
 }
 
@@ -171,8 +171,8 @@ pub(super) fn distinct<'a>(
     own
 }
 
-/// Whether a leg is closed in all three components of a velocity or in none, so that any axes will do.
-pub(crate) fn is_whole(mechanism: &Mechanism, leg: usize) -> bool {
+/// Whether a leg's closure uses all three components of each velocity or none, so that it may be written in any axes.
+pub(crate) fn may_use_any_axes(mechanism: &Mechanism, leg: usize) -> bool {
     let rows = mechanism.closure_rows(leg);
     [0, 1].iter().all(|&part| {
         let count = rows.iter().filter(|&&row| row / 3 == part).count();

@@ -1,4 +1,4 @@
-//! A platform that moves aside: its legs block directions A t = 0 that change with the pose, so that of the
+//! A platform that moves parasitic_motion: its legs block directions A t = 0 that change with the pose, so that of the
 //! six components of its velocity t the independent ones v give the others.
 //!
 //! With the rows A split by coordinates into those of the independent ones and the dependent ones, t = D v,
@@ -30,9 +30,9 @@ pub(super) fn dependent_components(independent: &[usize]) -> Vec<usize> {
     (0..SIX).filter(|at| !independent.contains(at)).collect()
 }
 
-/// How the velocity of a platform that moves aside follows from its independent coordinates.
+/// How the velocity of a platform with parasitic motion follows from its independent coordinates.
 #[derive(Debug)]
-pub struct Aside<'a> {
+pub struct ParasiticMotion<'a> {
     /// Which components of t the independent coordinates are.
     independent: Vec<usize>,
     /// The others.
@@ -47,7 +47,7 @@ pub struct Aside<'a> {
     pub(super) follow: Rows<'a>,
 }
 
-impl<'a> Aside<'a> {
+impl<'a> ParasiticMotion<'a> {
     /// Solves rows of A, as many as there are dependent coordinates. `independent` are the components of t that are
     /// independent; `home` evaluates an expression at the home configuration. `None` if the rows do not determine the
     /// dependent components.

@@ -224,9 +224,9 @@ pub(super) fn orientation(
     orientation(mechanism, configuration, leg.base_body)?.followed_by(&all[body.joint])
 }
 
-/// Axes that a chain's closure may be seen in, the first those of the body that it starts from: of the frames that
-/// are met on the way to the body that it ends on.
-pub(super) fn seats(
+/// The axes in which a chain's closure may see the body at its end: those of the frames on the path to it. The first
+/// are those of the body at its start.
+pub(super) fn observer_frames(
     mechanism: &Mechanism,
     configuration: &Configuration<'_>,
     index: usize,
@@ -242,9 +242,9 @@ pub(super) fn seats(
             antecedent(mechanism, at)
         })?);
     }
-    let before = Orientation::stations(std::slice::from_ref(&from));
+    let before = Orientation::intermediate_frames(std::slice::from_ref(&from));
     let mut all = vec![from];
-    let met = Orientation::stations(&bodies).into_iter();
+    let met = Orientation::intermediate_frames(&bodies).into_iter();
     for axes in met.filter(|axes| !before.contains(axes)) {
         if !all.contains(&axes) {
             all.push(axes);
@@ -253,18 +253,22 @@ pub(super) fn seats(
     Some(all)
 }
 
-/// The [`seats`] to choose from, by number: the first alone for legs of a platform, and for chains that are closed in
-/// some components alone that others of the axes mix with the rest.
+/// The numbers of the [`observer_frames`] to choose from. The first alone for legs of a platform, and for chains whose
+/// closure uses only some components of a velocity that other axes would mix with the rest.
 #[must_use]
-pub(crate) fn seat_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
+pub(crate) fn observer_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     if mechanism.skeleton().is_none() {
         return vec![0];
     }
     let arena = Arena::new();
     let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
-    seats(mechanism, &configuration, leg)
-        .filter(|seats| keep_rows(mechanism, leg, &arena, &configuration, seats))
-        .map_or(vec![0], |seats| distinct(&seats, &arena, &configuration))
+    observer_frames(mechanism, &configuration, leg)
+        .filter(|observer_frames| {
+            keep_rows(mechanism, leg, &arena, &configuration, observer_frames)
+        })
+        .map_or(vec![0], |observer_frames| {
+            distinct(&observer_frames, &arena, &configuration)
+        })
 }
 
 impl<'a> Relative<'a> {

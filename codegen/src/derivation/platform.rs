@@ -183,7 +183,7 @@ impl<'a> PlatformPose<'a> {
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> PlatformMotion<'a> {
         let own = match &self.directions {
             Directions::Axes(motion) => motion,
-            Directions::Joints(path) => return self.carried(path, twist, acceleration),
+            Directions::Joints(path) => return self.motion_along(path, twist, acceleration),
         };
         let spread = |values: &[Expr<'a>]| {
             let mut linear = Vector3::zero(self.arena);
@@ -211,7 +211,7 @@ impl<'a> PlatformPose<'a> {
     }
 
     /// The motion that the joints on the way give.
-    fn carried(
+    fn motion_along(
         &self,
         path: &Path<'a>,
         rates: &[Expr<'a>],

@@ -15,10 +15,10 @@
 //! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
 //! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
 
+use super::context::DerivationContext;
 use super::elimination::{Rows, adjugate};
 use super::guard::GuardKind;
 use super::linear::{apply, dot, product};
-use super::sheet::Sheet;
 use crate::cas::{CosineSine, Expr};
 use crate::mechanism::JointKind;
 use crate::mechanism::numeric::best_conditioned;
@@ -41,7 +41,7 @@ struct System<'a> {
     right: Vec<Expr<'a>>,
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// The step from the pose towards the actuators.
     pub(super) fn pose_step(&mut self) -> Vec<Expr<'a>> {
         let positions = self.actuator_positions();

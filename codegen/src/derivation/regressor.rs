@@ -6,12 +6,12 @@
 //! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
 
 use super::actuators::OwnForces;
-use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::linear::{dot, product, transposed};
 use super::motion::RobotMotion;
 use super::names::{coordinate_label, joined};
 use super::parameter::BodyParameter;
+use super::platform_body::PlatformBody;
 use super::robot::Robot;
 use super::selection::Combination;
 use super::underivable::Underivable;
@@ -94,8 +94,8 @@ impl<'a> Robot<'a> {
         match parameter {
             BodyParameter::Leg { leg, joint, symbol } if symbol.is_inertial() => {
                 self.arena.enter(&self.mechanism.legs[leg].name);
-                if let Some(body) = &motion.carried[leg][joint] {
-                    return self.project_carried(projection, body, symbol);
+                if let Some(body) = &motion.platform_bodies[leg][joint] {
+                    return self.project_platform_body(projection, body, symbol);
                 }
                 let is_at_end = joint + 1 == self.mechanism.legs[leg].joints.len();
                 if let Some(acceleration) = motion.ends[leg].filter(|_| is_at_end)
@@ -117,7 +117,9 @@ impl<'a> Robot<'a> {
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");
                 let body = motion.platform.as_ref();
-                body.map_or_else(Vec::new, |b| self.project_carried(projection, b, symbol))
+                body.map_or_else(Vec::new, |b| {
+                    self.project_platform_body(projection, b, symbol)
+                })
             }
         }
     }
@@ -132,7 +134,10 @@ impl<'a> Robot<'a> {
         let Some(closure) = &self.legs[leg].closure else {
             return Vec::new();
         };
-        let partials = self.aside.as_ref().map(|aside| aside.partials(self.arena));
+        let partials = self
+            .parasitic_motion
+            .as_ref()
+            .map(|parasitic| parasitic.partials(self.arena));
         let velocities = closure.end_velocities(self.arena, partials.as_deref());
         let forces: Vec<Expr<'a>> = velocities.iter().map(|v| acceleration.dot(*v)).collect();
         if projection.on_platform {
@@ -143,14 +148,14 @@ impl<'a> Robot<'a> {
     }
 
     /// The column of a body that moves with the platform.
-    fn project_carried(
+    fn project_platform_body(
         &self,
         projection: &Projection<'a>,
-        body: &CarriedBody<'a>,
+        body: &PlatformBody<'a>,
         symbol: StandardParameter,
     ) -> Vec<Expr<'a>> {
-        if let Some(aside) = self.aside.as_ref().filter(|_| self.own_axes) {
-            let forces = body.on_partials(self.arena, symbol, &aside.partials(self.arena));
+        if let Some(parasitic) = self.parasitic_motion.as_ref().filter(|_| self.own_axes) {
+            let forces = body.on_partials(self.arena, symbol, &parasitic.partials(self.arena));
             return if projection.on_platform {
                 forces
             } else {
@@ -233,7 +238,7 @@ impl<'a> Robot<'a> {
     ) -> Vec<Expr<'a>> {
         let rows = &projection.legs[leg];
         let at_end = self.legs[leg].closure.as_ref();
-        let at_end = at_end.filter(|_| self.platform.is_some() && self.aside.is_none());
+        let at_end = at_end.filter(|_| self.platform.is_some() && self.parasitic_motion.is_none());
         match at_end.filter(|c| projection.on_platform && c.is_shorter_at_end(rows, forces)) {
             Some(closure) => closure.project_at_end(forces),
             None => self.combine(rows, forces),
@@ -307,7 +312,7 @@ impl<'a> Robot<'a> {
                 BodyParameter::Leg { leg, joint, symbol } if (leg, joint) == (l, j) => Some(symbol),
                 _ => None,
             };
-            match &motion.carried[l][j] {
+            match &motion.platform_bodies[l][j] {
                 Some(body) => {
                     let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
                     add(on_twist, body.project(&self.free, wrench));

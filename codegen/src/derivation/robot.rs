@@ -2,7 +2,6 @@
 //! function is made of.
 
 use super::body::{LegRates, leg_base, leg_bodies};
-use super::carried::{CarriedBody, Mount};
 use super::closure::LegClosure;
 use super::configuration::Configuration;
 use super::elimination::Rows;
@@ -13,8 +12,9 @@ use super::linear::apply;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
-use super::parasitic::Aside;
+use super::parasitic::ParasiticMotion;
 use super::platform::{PlatformMotion, PlatformPose};
+use super::platform_body::{Mount, PlatformBody};
 use super::selection::Formulation;
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Vector3};
@@ -35,19 +35,19 @@ pub struct Robot<'a> {
     /// The independent twist coordinates.
     pub twist: Vec<TwistCoordinate>,
     /// The components of the platform's velocity in the directions of its pose: the independent ones, or all
-    /// six of a platform that moves aside.
+    /// six of a platform with parasitic motion.
     pub(super) free: Vec<TwistCoordinate>,
-    /// How these follow from the independent ones, of a platform that moves aside.
-    pub(super) aside: Option<Aside<'a>>,
+    /// How these follow from the independent ones, of a platform with parasitic motion.
+    pub(super) parasitic_motion: Option<ParasiticMotion<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
     /// Whether what acts on a chain's joints goes to the skeleton as one force at the chain's end.
     pub(super) at_end: bool,
-    /// Whether what acts on a platform that moves aside meets its independent coordinates in its own axes.
+    /// Whether what acts on a platform with parasitic motion meets its independent coordinates in its own axes.
     pub(super) own_axes: bool,
     /// Whether legs that end in a point lend masses there to what they end on.
-    pub(super) lends: bool,
-    /// Whether rows of legs on a platform that moves aside share the velocities of the legs' ends.
+    pub(super) lump_end_masses: bool,
+    /// Whether rows of legs on a platform with parasitic motion share the velocities of the legs' ends.
     pub(super) by_ends: bool,
     /// Whether rates of legs are taken from the independent rates by the rows of their reduced Jacobians.
     by_rows: bool,
@@ -94,11 +94,11 @@ impl<'a> Robot<'a> {
                 .map(crate::mechanism::Motion::twist)
                 .unwrap_or_default(),
             free: Self::free_coordinates(motion),
-            aside: None,
+            parasitic_motion: None,
             legs: Vec::new(),
             at_end: formulation.at_end,
             own_axes: formulation.own_axes,
-            lends: formulation.lends,
+            lump_end_masses: formulation.lump_end_masses,
             by_ends: formulation.by_ends,
             by_rows: formulation.by_rows,
             guards: Vec::new(),
@@ -107,8 +107,8 @@ impl<'a> Robot<'a> {
         for leg in 0..mechanism.legs.len() {
             robot.derive_leg(leg, formulation)?;
         }
-        robot.aside = robot.derive_aside()?;
-        if robot.aside.is_some() {
+        robot.parasitic_motion = robot.derive_parasitic_motion()?;
+        if robot.parasitic_motion.is_some() {
             robot.follow_independent();
         }
         Ok(robot)
@@ -116,8 +116,8 @@ impl<'a> Robot<'a> {
 
     /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
     fn follow_independent(&mut self) {
-        let partials = self.aside.as_ref().filter(|_| self.by_ends);
-        let partials = partials.map(|aside| aside.partials(self.arena));
+        let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|parasitic| parasitic.partials(self.arena));
         for index in 0..self.legs.len() {
             let leg = &self.mechanism.legs[index];
             self.arena.enter(&leg.name);
@@ -171,15 +171,15 @@ impl<'a> Robot<'a> {
         });
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
         let accelerations = Accelerations::new(acceleration);
-        let carried = |mount: &Mount<'a>| {
+        let platform_body = |mount: &Mount<'a>| {
             let both = self.platform.as_ref().zip(platform.as_ref());
-            both.map(|(pose, motion)| CarriedBody::new(pose, motion, gravity, mount))
+            both.map(|(pose, motion)| PlatformBody::new(pose, motion, gravity, mount))
         };
         let mut motion = RobotMotion {
             u: vec![],
             u_dot: vec![],
             bodies: vec![],
-            carried: vec![],
+            platform_bodies: vec![],
             ends: vec![],
             platform: None,
         };
@@ -222,12 +222,12 @@ impl<'a> Robot<'a> {
             motion.u.push(rates.u);
             motion.u_dot.push(rates.u_dot);
             let mounts = Mount::of_leg(self.arena, leg);
-            let on_platform = mounts.iter().map(|m| m.as_ref().and_then(&carried));
-            motion.carried.push(on_platform.collect());
+            let on_platform = mounts.iter().map(|m| m.as_ref().and_then(&platform_body));
+            motion.platform_bodies.push(on_platform.collect());
             motion.bodies.push(bodies);
         }
         self.arena.enter("platform");
-        motion.platform = carried(&Mount::platform(self.arena));
+        motion.platform = platform_body(&Mount::platform(self.arena));
         self.arena.enter("");
         self.motions.borrow_mut().push(Moved {
             motion: motion.clone(),

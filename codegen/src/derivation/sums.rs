@@ -8,13 +8,13 @@
 //! from it in nothing but numbers.
 
 use super::actuators::{ActuatorSystem, COFACTORS, OwnForces};
+use super::context::{DerivationContext, Owner, column};
 use super::elimination::{Rows, inverse};
 use super::function_form::FunctionForm;
-use super::functions::{Derived, on_sheet, with_divisors};
+use super::functions::{Derived, derive_with, with_divisors};
 use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, dot, transposed};
 use super::selection::Selection;
-use super::sheet::{Owner, Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, InputElement};
 use crate::mechanism::Mechanism;
@@ -59,8 +59,8 @@ pub(crate) fn derive_addends<'a>(
     form: FunctionForm,
 ) -> Result<Option<Addends<'a>>, Underivable> {
     let mut shape = None;
-    let derived = on_sheet(arena, mechanism, selection, form, |sheet| {
-        let Some(parts) = sheet.addends(form.function) else {
+    let derived = derive_with(arena, mechanism, selection, form, |context| {
+        let Some(parts) = context.addends(form.function) else {
             return Ok(Vec::new());
         };
         let rows = parts.rows.len() / (mechanism.dof() + 1);
@@ -208,7 +208,7 @@ fn upper<'a>(matrix: &Rows<'a>) -> Vec<Expr<'a>> {
     rows.flat_map(|(i, row)| row[i..].to_vec()).collect()
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> DerivationContext<'a, '_> {
     /// What the first leg adds to each sum, what the platform adds, and the rows of the first leg's actuators.
     fn addends(&mut self, function: Function) -> Option<Parts<'a>> {
         let n = self.robot.mechanism.actuated().len();

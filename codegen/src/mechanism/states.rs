@@ -103,7 +103,7 @@ fn displaced(
         return Some((joints.clone(), joints));
     }
     if mechanism.is_parasitic() {
-        return displaced_aside(mechanism, direction, spread, is_lenient);
+        return displaced_parasitic(mechanism, direction, spread, is_lenient);
     }
     let pose = match &mechanism.platform {
         Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
@@ -113,9 +113,9 @@ fn displaced(
     Some((pose, joints))
 }
 
-/// A state of a platform that moves aside: a pose at a length from home, and the nearest one that the legs
+/// A state of a platform with parasitic motion: a pose at a length from home, and the nearest one that the legs
 /// allow, followed in small steps so that the working mode stays.
-fn displaced_aside(
+fn displaced_parasitic(
     mechanism: &Mechanism,
     direction: &[f64],
     spread: f64,

@@ -6,8 +6,8 @@
 //! have little to do with another leg's; a small function is searched as a whole, and a heading with many
 //! nodes in pieces, each a run of its own nodes in the order in which the derivation has made them.
 
-use super::own_pairs::{Kind, OwnPairs};
 use super::requests::{Form, Request, requests};
+use super::self_cancelling_pairs::{Kind, SelfCancellingPairs};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
 use crate::cas::filter::Filter;
@@ -109,9 +109,9 @@ fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
     let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
     let (requests, heads) = requests(dag, &tree, &targets, all);
     let filter = Filter::new(heads.keys(), heads.len());
-    let own_pairs = OwnPairs::new(all, &requests, heads.values().copied());
+    let self_cancelling_pairs = SelfCancellingPairs::new(all, &requests, heads.values().copied());
     let mut hits = Vec::new();
-    for_each_pair(dag, all, &own_pairs, |definition, value| {
+    for_each_pair(dag, all, &self_cancelling_pairs, |definition, value| {
         let ([key], negative) = canonical([value]);
         if !filter.may_hold(&key) {
             return;
@@ -162,7 +162,7 @@ fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definit
 fn for_each_pair(
     dag: &Dag,
     all: &[usize],
-    own: &OwnPairs,
+    own: &SelfCancellingPairs,
     mut visit: impl FnMut(Definition, Element),
 ) {
     for (place, &first) in all.iter().enumerate().filter(|(_, n)| dag.is_live(**n)) {

@@ -25,7 +25,7 @@ pub(super) fn lanes(draft: &Draft<'_>) -> Option<Lanes> {
 
 fn of_selection(draft: &Draft<'_>, selection: &Selection) -> Option<Lanes> {
     let arena = Arena::new();
-    draft.template.stand_in(&arena);
+    draft.template.substitute_placeholders(&arena);
     let mechanism = &draft.template.mechanism;
     let addends = derive_addends(
         &arena,

@@ -1,7 +1,7 @@
 //! A leg that stands for all legs of its kind: the numbers in which they differ are elements of an array.
 
 use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
-use super::stands::{Constant, Stands};
+use super::placeholders::{Constant, Placeholders};
 use crate::cas::{Angle, Arena, InputElement, Number};
 use crate::derivation::working_modes;
 use crate::mechanism::{Leg, Mechanism};
@@ -27,21 +27,21 @@ impl Template {
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {
             return None;
         }
-        let mut stands = Stands::new();
+        let mut placeholders = Placeholders::new();
         let mut legs = mechanism.legs.clone();
         let names = names_of_numbers(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(numbers).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.number(all, &names[at]);
+            *of_legs[0][at] = placeholders.number(all, &names[at]);
         }
         let names = names_of_angles(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(angles).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.angle(all, &names[at])?;
+            *of_legs[0][at] = placeholders.angle(all, &names[at])?;
         }
-        let mut constants = stands.constants;
+        let mut constants = placeholders.constants;
         legs[0].name = name(&mechanism.legs);
         let mut home = mechanism.home.clone();
         home.signs = signs(mechanism, &mut constants);
@@ -62,7 +62,7 @@ impl Template {
     }
 
     /// Lets elements of the array stand for the numbers wherever they come up in a graph.
-    pub(super) fn stand_in(&self, arena: &Arena) {
+    pub(super) fn substitute_placeholders(&self, arena: &Arena) {
         for (index, constant) in self.constants.iter().enumerate() {
             match constant.number {
                 Some(number) => arena.stand_for(number, ARRAY, index),

@@ -20,7 +20,7 @@ pub(super) struct Constant {
 
 /// What stands for what.
 #[derive(Debug)]
-pub(super) struct Stands {
+pub(super) struct Placeholders {
     /// All numbers that the legs have of their own.
     pub(super) constants: Vec<Constant>,
     stream: Stream,
@@ -29,7 +29,7 @@ pub(super) struct Stands {
     angles: Vec<(Vec<Angle>, Angle)>,
 }
 
-impl Stands {
+impl Placeholders {
     pub(super) fn new() -> Self {
         Self {
             constants: Vec::new(),
@@ -121,7 +121,7 @@ fn constant(all: &[Angle], others: &[Angle], less: fn(Angle) -> Angle) -> Option
 
 #[cfg(test)]
 mod tests {
-    use super::Stands;
+    use super::Placeholders;
     use crate::cas::{Angle, Number, Ratio};
 
     fn degrees(all: [i128; 2]) -> Vec<Angle> {
@@ -132,23 +132,23 @@ mod tests {
 
     #[test]
     fn what_is_equal_or_opposite_in_all_legs_stays_so() {
-        let mut stands = Stands::new();
+        let mut placeholders = Placeholders::new();
         let numbers = |all: [i64; 2]| all.map(Number::integer).to_vec();
-        let mut of = |all| stands.number(numbers(all), "d of `1`");
+        let mut of = |all| placeholders.number(numbers(all), "d of `1`");
         let first = of([11, -30]);
         assert_ne!(first, Number::integer(11));
         assert_eq!(of([11, -30]), first);
         assert_eq!(of([-11, 30]), -first);
         assert_ne!(of([11, 30]), first);
         assert_eq!(of([2, 2]), Number::integer(2));
-        assert_eq!(stands.constants.len(), 2);
+        assert_eq!(placeholders.constants.len(), 2);
     }
 
     #[test]
     fn angles_keep_sums_and_differences_that_all_legs_have() {
-        let mut stands = Stands::new();
+        let mut placeholders = Placeholders::new();
         let mut of = |all| {
-            stands
+            placeholders
                 .angle(degrees(all), "gamma of `1`")
                 .expect("an angle")
         };
@@ -158,9 +158,9 @@ mod tests {
         assert_eq!(sum(of([45, 194]), first.negative()), degrees([30, 30])[0]);
         assert_eq!(sum(of([75, -74]), first), degrees([90, 90])[0]);
         assert_eq!(of([7, 7]), degrees([7, 7])[0]);
-        assert_eq!(stands.constants[1].name, "sin(gamma of `1`)");
+        assert_eq!(placeholders.constants[1].name, "sin(gamma of `1`)");
         // Cosine and sine of the first and of 30 degrees more; those of its negative and of 90 degrees less it are known.
-        let numbers = stands.constants.iter().filter_map(|c| c.number);
+        let numbers = placeholders.constants.iter().filter_map(|c| c.number);
         assert_eq!(numbers.count(), 4);
     }
 }

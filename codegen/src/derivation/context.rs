@@ -1,5 +1,4 @@
-//! The sheet on which a function is derived: the robot, the function's inputs as they are asked for, and
-//! the conditions that come up on the way.
+//! The context in which a function is derived: the robot, the inputs that were used, and the conditions that arose.
 
 use super::elimination::Rows;
 use super::guard::{Guard, GuardKind};
@@ -37,8 +36,8 @@ impl Owner {
     }
 }
 
-/// A function being derived.
-pub(super) struct Sheet<'a, 's> {
+/// The context of a function that is derived.
+pub(super) struct DerivationContext<'a, 's> {
     pub(super) robot: Robot<'a>,
     pub(super) selection: &'s Selection,
     pub(super) from: MotionInput,
@@ -50,8 +49,8 @@ pub(super) struct Sheet<'a, 's> {
     pub(super) guards: Vec<Guard<'a>>,
 }
 
-impl<'a, 's> Sheet<'a, 's> {
-    /// A sheet with the configuration's inputs; `still` are coordinates of the pose that are known to be zero.
+impl<'a, 's> DerivationContext<'a, 's> {
+    /// Derives the robot; `still` are coordinates of the pose that are known to be zero.
     ///
     /// # Errors
     /// See [`Robot::new`].
@@ -84,7 +83,7 @@ impl<'a, 's> Sheet<'a, 's> {
         })
     }
 
-    /// An input of the function, a further one or one that is there.
+    /// An input of the function.
     pub(super) fn input(&mut self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
         if !self.inputs.contains(&(name, count)) {
             self.inputs.push((name, count));

@@ -17,7 +17,7 @@ pub(super) enum Kind {
 type Pair = ((u32, u32), Kind);
 
 /// For each two of a group's nodes which of their values only they ask for.
-pub(super) struct OwnPairs {
+pub(super) struct SelfCancellingPairs {
     /// The number of each node in the group.
     places: Vec<u32>,
     size: usize,
@@ -25,7 +25,7 @@ pub(super) struct OwnPairs {
     bits: Vec<u8>,
 }
 
-impl OwnPairs {
+impl SelfCancellingPairs {
     /// Of the requests that have a value in common, the last of each in `heads`.
     pub(super) fn new(
         group: &[usize],

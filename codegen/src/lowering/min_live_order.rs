@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 /// The same program in an order in which few values wait for their last use.
 #[must_use]
-pub(crate) fn few_waiting(program: &Program) -> Program {
+pub(crate) fn schedule_min_live(program: &Program) -> Program {
     let mut order = Order::new(program);
     let guarded = program.guards.iter();
     for step in guarded.filter_map(|guard| step(guard.operand)) {

@@ -13,7 +13,7 @@ const BITS: usize = 32;
 
 /// Projections and logarithms of all nodes, and which of them there are.
 #[derive(Debug, Clone)]
-pub(super) struct Sieve {
+pub(super) struct CandidatePrefilter {
     projections: Vec<u64>,
     /// None for zero.
     logarithms: Vec<Option<u32>>,
@@ -21,7 +21,7 @@ pub(super) struct Sieve {
     products: Vec<u64>,
 }
 
-impl Sieve {
+impl CandidatePrefilter {
     /// That of a graph's nodes; valid until nodes are added.
     pub(super) fn new(dag: &Dag) -> Self {
         let logarithms = Logarithms::get();
@@ -29,7 +29,7 @@ impl Sieve {
         let values: Vec<Element> = (0..dag.len()).map(value).collect();
         // A power of two of them, so that a mask finds the place.
         let words = (values.len() * BITS / 64).max(1).next_power_of_two();
-        let mut sieve = Self {
+        let mut prefilter = Self {
             projections: values.iter().map(|v| v.projection()).collect(),
             logarithms: values.iter().map(|v| logarithms.of(*v)).collect(),
             sums: vec![0; words],
@@ -37,14 +37,14 @@ impl Sieve {
         };
         // A node stands for its negative, too.
         for value in values.iter().flat_map(|v| [*v, -*v]) {
-            let (word, bit) = sieve.place(value.projection());
-            sieve.sums[word] |= bit;
+            let (word, bit) = prefilter.place(value.projection());
+            prefilter.sums[word] |= bit;
         }
-        for logarithm in sieve.logarithms.iter().flatten() {
+        for logarithm in prefilter.logarithms.iter().flatten() {
             let at = *logarithm as usize;
-            sieve.products[at / 64] |= 1 << (at % 64);
+            prefilter.products[at / 64] |= 1 << (at % 64);
         }
-        sieve
+        prefilter
     }
 
     /// Projections are random, so their own bits are a hash of them.

@@ -30,7 +30,7 @@ pub struct Iteration {
 /// What a function costs, all that it calls included.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
-pub struct WholeCost {
+pub struct TotalCost {
     /// What is done once.
     #[serde(flatten)]
     pub once: Cost,
@@ -59,7 +59,7 @@ pub struct SideBySide {
 const FORWARD: &str = "pose_from_actuators";
 const INVERSE: &str = "joints";
 
-impl From<Cost> for WholeCost {
+impl From<Cost> for TotalCost {
     fn from(once: Cost) -> Self {
         Self {
             once,
@@ -69,7 +69,7 @@ impl From<Cost> for WholeCost {
     }
 }
 
-impl WholeCost {
+impl TotalCost {
     /// Adds what is called once.
     fn call(&mut self, other: Self) {
         self.once += other.once;
@@ -107,14 +107,14 @@ impl RobotModel {
     /// What a function costs, all that it calls included. Functions that the model was not asked for cost
     /// nothing.
     #[must_use]
-    pub fn cost(&self, function: &CompiledFunction) -> WholeCost {
+    pub fn cost(&self, function: &CompiledFunction) -> TotalCost {
         let newton = self.needs_joints(function) && function.computes == Function::Joints;
-        let mut whole = WholeCost::from(if newton {
+        let mut total = TotalCost::from(if newton {
             Cost::default()
         } else {
             function.program.cost()
         });
-        whole.side_by_side = function.lanes.as_ref().map(|lanes| {
+        total.side_by_side = function.lanes.as_ref().map(|lanes| {
             let (once, each) = lanes.operations();
             let legs = lanes.legs.len();
             SideBySide {
@@ -126,23 +126,23 @@ impl RobotModel {
         });
         let takes_pose = function.program.inputs.iter().any(|i| i.name == "pose");
         if takes_pose && !self.finds_pose(function) {
-            whole.call(WholeCost::from(self.scaled_quaternion()));
+            total.call(TotalCost::from(self.scaled_quaternion()));
         }
         if self.finds_pose(function) && self.needs_pose(function) {
-            whole.call(self.forward_kinematics());
+            total.call(self.forward_kinematics());
         }
         if newton {
-            whole.call(self.newton());
+            total.call(self.newton());
         } else if self.needs_joints(function) {
-            whole.call(self.of(Function::Joints, MotionInput::Pose));
+            total.call(self.of(Function::Joints, MotionInput::Pose));
         }
-        whole
+        total
     }
 
-    fn of(&self, function: Function, from: MotionInput) -> WholeCost {
+    fn of(&self, function: Function, from: MotionInput) -> TotalCost {
         let found = self.function(function, from);
         found.map_or_else(
-            || WholeCost::from(Cost::default()),
+            || TotalCost::from(Cost::default()),
             |function| self.cost(function),
         )
     }
@@ -168,27 +168,27 @@ impl RobotModel {
 
     /// `pose_from_actuators`: the closed form where it is taken, and Gauss and Newton's steps where actuators are
     /// too many for it or there is none.
-    fn forward_kinematics(&self) -> WholeCost {
+    fn forward_kinematics(&self) -> TotalCost {
         let (n, r) = (self.mechanism.actuated().len(), self.mechanism.dof());
-        let mut whole = WholeCost::from(self.scaled_quaternion());
+        let mut total = TotalCost::from(self.scaled_quaternion());
         let closed = self.function(Function::PoseInClosedForm, MotionInput::Actuators);
         if let Some(closed) = closed.filter(|_| n == r) {
-            whole.call(self.cost(closed));
-            return whole;
+            total.call(self.cost(closed));
+            return total;
         }
         if let Some(closed) = closed {
             // It is compared with the start.
-            whole.call(self.cost(closed));
-            whole.once.additions += self.mechanism.pose_len();
-            whole.once.guards += self.mechanism.pose_len();
+            total.call(self.cost(closed));
+            total.once.additions += self.mechanism.pose_len();
+            total.once.guards += self.mechanism.pose_len();
         }
-        let mut step = WholeCost::from(Cost::default());
+        let mut step = TotalCost::from(Cost::default());
         // The bounds of the next step.
         step.once.multiplications += 3;
         if self.mechanism.is_parasitic() {
             // The start is looked at. A short step leaves the closures once, and is looked at when it is back.
-            let turn = self.turn_aside();
-            whole.call(turn.clone());
+            let turn = self.displacement_with_correction();
+            total.call(turn.clone());
             step.call(turn.clone());
             step.call(turn);
         } else {
@@ -202,13 +202,13 @@ impl RobotModel {
                 step.call(self.of(Function::InverseJacobian, MotionInput::Pose));
             }
         }
-        whole.iterate(FORWARD, step);
-        whole
+        total.iterate(FORWARD, step);
+        total
     }
 
     /// A turn of `aside::displace`: all six components displace the start, and the dependent ones are corrected.
-    fn turn_aside(&self) -> WholeCost {
-        let mut turn = WholeCost::from(displacement(6, true));
+    fn displacement_with_correction(&self) -> TotalCost {
+        let mut turn = TotalCost::from(displacement(6, true));
         turn.once += elimination(6 - self.mechanism.dof());
         turn.call(self.of(Function::BlockedError, MotionInput::Pose));
         turn.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
@@ -216,14 +216,14 @@ impl RobotModel {
     }
 
     /// `joints` by Newton's method, where the way from home is gone in one step.
-    fn newton(&self) -> WholeCost {
+    fn newton(&self) -> TotalCost {
         let legs = self.mechanism.legs.iter();
         let sizes: Vec<usize> = legs.map(|leg| leg.independent().count()).collect();
         let mut evaluation = self.of(Function::ClosureError, MotionInput::Joints).once;
         evaluation += self.of(Function::LegsJacobian, MotionInput::Joints).once;
-        let mut whole = WholeCost::from(Cost::default());
+        let mut total = TotalCost::from(Cost::default());
         if self.has_quaternion() {
-            whole.once += Cost {
+            total.once += Cost {
                 additions: 3,
                 multiplications: 4,
                 divisions: 4,
@@ -238,13 +238,13 @@ impl RobotModel {
             step.multiplications += size;
             // The mode is compared with that at home.
             for _ in 0..2 {
-                whole.once += evaluation;
-                whole.once += elimination(size);
+                total.once += evaluation;
+                total.once += elimination(size);
             }
-            whole.once.multiplications += 1;
+            total.once.multiplications += 1;
         }
-        whole.iterate(INVERSE, WholeCost::from(step));
-        whole
+        total.iterate(INVERSE, TotalCost::from(step));
+        total
     }
 }
 

@@ -63,7 +63,7 @@ impl<'a> Mount<'a> {
 
 /// A body that moves with the platform, in the base's axes.
 #[derive(Debug, Clone)]
-pub struct CarriedBody<'a> {
+pub struct PlatformBody<'a> {
     /// Orientation of the platform.
     platform: Matrix3<'a>,
     /// Orientation of the body on the platform.
@@ -80,7 +80,7 @@ pub struct CarriedBody<'a> {
     arm: Vector3<'a>,
 }
 
-impl<'a> CarriedBody<'a> {
+impl<'a> PlatformBody<'a> {
     /// A body mounted on the platform.
     #[must_use]
     pub fn new(

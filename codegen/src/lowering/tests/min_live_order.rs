@@ -1,7 +1,7 @@
 //! The order in which few values wait for their last use.
 
-use crate::lowering::few_waiting;
 use crate::lowering::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
+use crate::lowering::schedule_min_live;
 
 /// Element of the one input.
 fn input(index: usize) -> Operand {
@@ -60,7 +60,7 @@ fn what_shares_a_value_stands_side_by_side() {
         Operation::Mul(step(2), input(0)),
     ];
     let before = program([1, 4], &steps, &[1, 3, 4, 5]);
-    let after = few_waiting(&before);
+    let after = schedule_min_live(&before);
     assert_eq!([waiting(&before), waiting(&after)], [2, 1]);
     assert_eq!(after.verify(), Ok(()));
     let order = [steps[0], steps[1], Operation::Mul(step(0), input(3))];
@@ -79,7 +79,7 @@ fn sine_and_cosine_stay_together() {
         Operation::Mul(step(3), step(3)),
         Operation::Mul(step(2), input(3)),
     ];
-    let after = few_waiting(&program([1, 2], &steps, &[4, 5]));
+    let after = schedule_min_live(&program([1, 2], &steps, &[4, 5]));
     let at = |wanted: Operation| after.steps.iter().position(|s| s.operation == wanted);
     let cosine = at(Operation::Cosine(step(0))).expect("a cosine");
     assert_eq!(at(Operation::Sine(step(0))), Some(cosine + 1));
@@ -99,7 +99,7 @@ fn what_conditions_are_on_comes_first() {
         operand: step(1),
         condition: Condition::Mass,
     });
-    let after = few_waiting(&before);
+    let after = schedule_min_live(&before);
     assert_eq!(after.steps[0].operation, steps[1]);
     assert_eq!(after.guards[0].operand, step(0));
     assert_eq!(after.verify(), Ok(()));
@@ -111,7 +111,7 @@ fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
     let mut before = program([2, 2], &steps, &[0, 0, 0, 0]);
     before.entries[1] = Entry::positive(Operand::Constant(0.0));
     before.entries[2] = Entry::positive(input(3)).times(true);
-    assert_eq!(few_waiting(&before), before);
+    assert_eq!(schedule_min_live(&before), before);
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn of_a_large_program_the_next_result_is_taken_as_it_stands() {
         steps.push(Operation::Mul(Operand::Step(0), input(3)));
         steps.push(Operation::Mul(input(1), input(3)));
         let before = program([1, 3], &steps, &[links - 1, links, links + 1]);
-        let after = few_waiting(&before);
+        let after = schedule_min_live(&before);
         assert_eq!(after.verify(), Ok(()));
         let alone = after.steps[0].operation == steps[links + 1];
         assert_eq!(alone, is_compared, "{links} links");
