@@ -4,6 +4,7 @@
 use super::configuration::Configuration;
 use super::joint::{joint_turn, link_vector};
 use super::orientation::{ObserverFrame, Orientation};
+use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Direction, Matrix3, Number, Vector3};
 use crate::mechanism::{JointKind, Leg};
 

@@ -5,6 +5,7 @@ use super::body::second_moment;
 use super::names::{AXES, Names};
 use super::parameter::BodyParameter;
 use super::turn::Turn;
+use super::spatial::{SpatialMotion, Wrench};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::description::StandardParameter;
 

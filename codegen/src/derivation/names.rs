@@ -4,7 +4,6 @@
 //! writes it, and to its negative as `minus_…`. Nothing here changes a program: what is named is not
 //! thereby needed. What only a reader would ask for is named in `naming`.
 
-use super::elimination::Rows;
 use crate::cas::{Expr, Vector3};
 use crate::mechanism::{Leg, TwistCoordinate};
 
@@ -92,7 +91,7 @@ impl Accelerations {
 }
 
 /// The entries of a matrix, `what_row_column`.
-pub(super) fn name_matrix<'a>(matrix: &Rows<'a>, what: &str) {
+pub(super) fn name_matrix<'a>(matrix: &[Vec<Expr<'a>>], what: &str) {
     let mut names = Names::default();
     for (i, row) in matrix.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {

@@ -18,6 +18,7 @@ use super::parameter::BodyParameter;
 use super::regressor::add;
 use super::robot::Robot;
 use super::tree_masses::{on_carrier, wrench_on_carrier};
+use super::spatial::Wrench;
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::mechanism::{End, JointIndex, JointKind, Leg};
 

@@ -12,6 +12,7 @@ use super::joint::link_vector;
 use super::motion_input::MotionInput;
 use super::orientation::{Orientation, constant_rotation, distinct, keep_rows};
 use super::rates::{Form, Rates};
+use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
 

@@ -15,8 +15,10 @@ use super::platform_body::PlatformBody;
 use super::robot::Robot;
 use super::selection::Combination;
 use super::underivable::Underivable;
+use super::spatial::Wrench;
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::description::StandardParameter;
+use crate::mechanism::JointIndex;
 
 /// What generalised forces are projected on.
 #[derive(Debug)]

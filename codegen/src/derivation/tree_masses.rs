@@ -12,6 +12,7 @@ use super::names::name_matrix;
 use super::orientation::constant_rotation;
 use super::parameter::BodyParameter;
 use super::robot::Robot;
+use super::spatial::Wrench;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{BodyIndex, Leg};
 
