@@ -8,15 +8,18 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// The order of a crate's modules, from the bottom up.
+/// The order of modules in a crate, or in one module of it, from the bottom up.
 struct LayerOrder {
     folder: &'static str,
+    /// The module; empty for the crate itself.
+    module: &'static str,
     order: &'static [&'static str],
 }
 
-const LAYER_ORDERS: [LayerOrder; 7] = [
+const LAYER_ORDERS: [LayerOrder; 8] = [
     LayerOrder {
         folder: "codegen",
+        module: "",
         order: &[
             "parallel",
             "effort",
@@ -43,7 +46,31 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
         ],
     },
     LayerOrder {
+        folder: "codegen",
+        module: "derivation",
+        order: &[
+            "motion_input",
+            "function_form",
+            "guard",
+            "parameter",
+            "selection",
+            "underivable",
+            "names",
+            "linear_algebra",
+            "kinematics",
+            "closure",
+            "bodies",
+            "robot",
+            "context",
+            "dynamics",
+            "regressor",
+            "forward",
+            "functions",
+        ],
+    },
+    LayerOrder {
         folder: "identification",
+        module: "",
         order: &[
             "error",
             "significant",
@@ -73,6 +100,7 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
     },
     LayerOrder {
         folder: "simulation",
+        module: "",
         order: &[
             "error",
             "trajectory",
@@ -92,6 +120,7 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
     },
     LayerOrder {
         folder: "report",
+        module: "",
         order: &[
             "text",
             "units",
@@ -113,6 +142,7 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
     },
     LayerOrder {
         folder: "robot",
+        module: "",
         order: &[
             "counted",
             "drawing",
@@ -147,6 +177,7 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
     },
     LayerOrder {
         folder: "interchange",
+        module: "",
         order: &[
             "options",
             "files",
@@ -168,6 +199,7 @@ const LAYER_ORDERS: [LayerOrder; 7] = [
     },
     LayerOrder {
         folder: "cli",
+        module: "",
         order: &[
             "failure",
             "names",
@@ -211,27 +243,39 @@ fn crate_of(folder: &'static str) -> &'static [Module] {
     })
 }
 
-/// What is wrong with the imports of a file, by the order of its crate.
-fn wrong(layers: &LayerOrder, module: &Module) -> Vec<String> {
-    let place = |name: &str| layers.order.iter().position(|known| *known == name);
-    let own = module.path.first().map_or("", String::as_str);
-    let name = module.path.join("/");
-    let Some(floor) = place(own) else {
-        return vec![format!(
-            "`{own}` has no place in the order of {}",
-            layers.folder
-        )];
-    };
-    let first = module.imports.iter().filter_map(|path| path.first());
-    let first: BTreeSet<&String> = first.collect();
-    let complaint = |root: &String| match place(root) {
-        Some(other) if other <= floor => None,
-        Some(_) => Some(format!("{name} imports up, from `{root}`")),
-        None => Some(format!(
-            "{name} imports `{root}`, which is no module, from the crate's root"
-        )),
-    };
-    first.into_iter().filter_map(complaint).collect()
+impl LayerOrder {
+    /// The layer that a path leads to; `None` if it does not lead into the ordered module.
+    fn layer<'p>(&self, path: &'p [String]) -> Option<&'p String> {
+        if self.module.is_empty() {
+            return path.first();
+        }
+        path.get(1).filter(|_| path[0] == self.module)
+    }
+
+    /// The imports of a file that violate the order.
+    fn violations(&self, file: &Module) -> Vec<String> {
+        let place = |name: &str| self.order.iter().position(|known| *known == name);
+        let Some(own) = self.layer(&file.path) else {
+            return Vec::new();
+        };
+        let name = file.path.join("/");
+        let Some(floor) = place(own) else {
+            return vec![format!(
+                "`{own}` has no place in the order of {}",
+                self.folder
+            )];
+        };
+        let imported = file.imports.iter().filter_map(|path| self.layer(path));
+        let imported: BTreeSet<&String> = imported.collect();
+        let violation = |layer: &String| match place(layer) {
+            Some(other) if other <= floor => None,
+            Some(_) => Some(format!("{name} imports up, from `{layer}`")),
+            None => Some(format!(
+                "{name} imports `{layer}`, which is no module, from the root of the order"
+            )),
+        };
+        imported.into_iter().filter_map(violation).collect()
+    }
 }
 
 /// The files of each folder that import from one another in a circle.
@@ -281,10 +325,10 @@ fn imports_run_downwards() {
     let mut all = Vec::new();
     for layers in &LAYER_ORDERS {
         let mut seen = BTreeSet::new();
-        for module in crate_of(layers.folder) {
-            seen.insert(module.path[0].clone());
-            let complaints = wrong(layers, module).into_iter();
-            all.extend(complaints.map(|one| format!("{}: {one}", layers.folder)));
+        for file in crate_of(layers.folder) {
+            seen.extend(layers.layer(&file.path).cloned());
+            let violations = layers.violations(file).into_iter();
+            all.extend(violations.map(|one| format!("{}: {one}", layers.folder)));
         }
         let gone = layers
             .order
@@ -319,10 +363,13 @@ fn no_folder_has_a_circle_of_imports() {
 fn an_import_from_above_is_seen() {
     let layers = LayerOrder {
         folder: "crate",
+        module: "",
         order: &["low", "high"],
     };
-    let complaints =
-        |text: &str, file: &[&str]| wrong(&layers, &Module::of(file, text, &BTreeMap::new())).len();
+    let complaints = |text: &str, file: &[&str]| {
+        let file = Module::of(file, text, &BTreeMap::new());
+        layers.violations(&file).len()
+    };
     assert_eq!(complaints("use crate::{low::A, high::B};", &["high"]), 0);
     assert_eq!(complaints("use crate::{low::A, high::B};", &["low"]), 1);
     assert_eq!(complaints("fn a() { super::high::b(); }", &["low"]), 1);
@@ -338,6 +385,23 @@ fn an_import_from_above_is_seen() {
         0
     );
     assert_eq!(complaints("", &["attic"]), 1);
+}
+
+#[test]
+fn an_import_from_above_is_seen_inside_a_module() {
+    let layers = LayerOrder {
+        folder: "crate",
+        module: "room",
+        order: &["low", "high"],
+    };
+    let complaints = |text: &str, file: &[&str]| {
+        let file = Module::of(file, text, &BTreeMap::new());
+        layers.violations(&file).len()
+    };
+    assert_eq!(complaints("use crate::room::low::A;", &["room", "high"]), 0);
+    assert_eq!(complaints("use super::high::A;", &["room", "low"]), 1);
+    assert_eq!(complaints("use super::high;", &["room"]), 0);
+    assert_eq!(complaints("use crate::room::high::A;", &["other"]), 0);
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The context in which a function is derived: the robot, the inputs that were used, and the conditions that arose.
 
-use super::elimination::Rows;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
 use super::parameter::BodyParameter;
-use super::robot::Robot;
 use super::selection::{JointsBy, Selection};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::robot::Robot;
 use crate::mechanism::Mechanism;
 use overact_core::ActuatorGroup;
 
