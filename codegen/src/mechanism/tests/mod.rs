@@ -8,10 +8,10 @@ use super::check;
 use crate::description::parse;
 use crate::diagnostic::Source;
 
-const PLANAR: &str = include_str!("../../../robots/planar_3rrr.toml");
-const SLIDERS: &str = include_str!("../../../robots/planar_3prr.toml");
-const DELTA: &str = include_str!("../../../robots/delta.toml");
-const HEXAPOD: &str = include_str!("../../../robots/hexapod.toml");
+const PLANAR: &str = include_str!("../../../../robots/planar_3rrr.toml");
+const SLIDERS: &str = include_str!("../../../../robots/planar_3prr.toml");
+const DELTA: &str = include_str!("../../../../robots/delta.toml");
+const HEXAPOD: &str = include_str!("../../../../robots/hexapod.toml");
 
 /// The description up to its settings, with replacements that must all have an effect.
 fn changed(text: &str, changes: &[(&str, &str)]) -> String {
