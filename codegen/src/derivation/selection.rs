@@ -3,7 +3,7 @@
 use super::parameter::BodyParameter;
 use crate::cas::Number;
 
-/// What the derivation of a function needs beside the mechanism.
+/// The choices for a robot that the derivation of a function needs in addition to the mechanism.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     /// The standard parameters whose columns are not identically zero.

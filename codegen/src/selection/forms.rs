@@ -293,7 +293,7 @@ impl Forms<'_> {
         Ok(worth.collect())
     }
 
-    /// The selection beside the own one in which a function is written otherwise.
+    /// Another selection in which the function has a different form.
     fn other_form(&self) -> Option<Selection> {
         let function = self.function;
         if function.columns() == Some(Columns::Standard) && !self.selection.combined.is_empty() {

@@ -219,7 +219,7 @@ fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        // A number counts if it stands for axes of its own in one of the legs.
+        // A number counts if it means different axes in one of the legs.
         let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
             let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
             let are_tried =

@@ -74,7 +74,7 @@ impl Search {
         self.lower_with(arena, mechanism, function, derived, &|_| None)
     }
 
-    /// The program of a derived function with inputs that stand for constants, of these values.
+    /// The program of a derived function in which inputs replace constants, of these values.
     pub(super) fn lower_with<'a>(
         &self,
         arena: &'a Arena,

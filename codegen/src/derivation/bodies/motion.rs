@@ -17,8 +17,8 @@ pub struct RobotMotion<'a> {
     pub bodies: Vec<Vec<BodyMotion<'a>>>,
     /// Those bodies of every leg that move with the platform.
     pub platform_bodies: Vec<Vec<Option<PlatformBody<'a>>>>,
-    /// Of every leg the acceleration of its end less gravity, where masses there are told as those of a point of what
-    /// it ends on.
+    /// For every leg the acceleration of its end less gravity, if a mass there counts as a point of the body at which the
+    /// leg ends.
     pub(crate) ends: Vec<Option<Vector3<'a>>>,
     /// The platform.
     pub platform: Option<PlatformBody<'a>>,

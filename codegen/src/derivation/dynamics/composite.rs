@@ -1,9 +1,9 @@
 //! The mass matrix of a leg by composite rigid bodies, in the frames' own axes.
 //!
 //! Masses, first moments and inertias are summed from the tips to the base. A column of the matrix is the
-//! forces on the quasi-velocities for one quasi-acceleration alone, from rest: behind the last joint that it
-//! moves all bodies are one, whose force and moment are handed down joint by joint. What acts on an earlier
-//! quasi-velocity is read off on the way, and every pair is met once.
+//! forces on the quasi-velocities for one quasi-acceleration alone, from rest. Behind the last joint that it
+//! moves all bodies move as one, and the wrench of this body is transferred joint by joint towards the base. Forces on
+//! the quasi-velocities on the way are its components there, so every pair of quasi-velocities occurs once.
 //!
 //! Along a run of parallel axes, whose quasi-velocities are absolute rates, a body behind does not turn with
 //! the one before it: it is a mass at the end of a lever, and its moment is none of the other's.
@@ -317,7 +317,7 @@ impl<'a> Chain<'_, 'a> {
         let is_one = self.is_one(j, k);
         let slides = self.leg.joints[j].kind == JointKind::Prismatic;
         if is_one && motion.angular.is_zero() && !slides && !self.counts(j, k) {
-            // It is carried along without a turn, and nobody asks for the moment about its axis.
+            // The bodies translate only, and the moment about the joint's axis is not needed.
             let moment = link.turned.first.cross(arrived);
             let force = arrived.scaled(link.turned.mass);
             return Some(Wrench { force, moment });

@@ -36,8 +36,10 @@ impl<'a> Robot<'a> {
         let mut free = vec![self.arena.zero(); self.free.len()];
         let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
         let partials = partials.map(|parasitic| parasitic.partials(self.arena));
-        let mut hung = Hung::nothing(self.arena, &self.mechanism.legs);
-        let of_legs = self.forces_of_legs(motion, values, &mut hung)?.into_iter();
+        let mut transferred = Transferred::nothing(self.arena, &self.mechanism.legs);
+        let of_legs = self
+            .forces_of_legs(motion, values, &mut transferred)?
+            .into_iter();
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
             self.arena.enter(&leg.name);
             for (joint, force) in leg.independent().zip(&forces) {
@@ -66,7 +68,7 @@ impl<'a> Robot<'a> {
         }
         self.arena.enter("platform");
         if let Some(body) = &motion.platform {
-            let whole = with(&hung.on_platform, &self.platform_inertia(values));
+            let whole = with(&transferred.on_platform, &self.platform_inertia(values));
             let wrench = body.wrench(&whole);
             self.name_wrench(&wrench, "", "platform");
             let on_twist = body.project(&self.free, wrench);
@@ -92,7 +94,7 @@ impl<'a> Robot<'a> {
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
-        hung: &mut Hung<'a>,
+        transferred: &mut Transferred<'a>,
     ) -> Option<Vec<Vec<Expr<'a>>>> {
         let legs = &self.mechanism.legs;
         let mut order: Vec<usize> = (0..legs.len()).collect();
@@ -103,7 +105,7 @@ impl<'a> Robot<'a> {
         let mut all = vec![Vec::new(); legs.len()];
         for index in order {
             self.arena.enter(&legs[index].name);
-            all[index] = self.summed_leg_forces(motion, values, index, hung)?;
+            all[index] = self.summed_leg_forces(motion, values, index, transferred)?;
         }
         Some(all)
     }
@@ -114,16 +116,16 @@ impl<'a> Robot<'a> {
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
         index: usize,
-        hung: &mut Hung<'a>,
+        transferred: &mut Transferred<'a>,
     ) -> Option<Vec<Expr<'a>>> {
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let chain = self.chain(index, values)?;
         let mut bodies = chain.bodies();
-        hung.add_to(index, &mut bodies);
+        transferred.add_to(index, &mut bodies);
         if self.lump_end_masses
             && let Some(end_mass) = chain.take_end_mass(&mut bodies)
         {
-            hung.add_end_mass(leg, &end_mass);
+            transferred.add_end_mass(leg, &end_mass);
         }
         let kept = chain.group(&mut bodies, leg.base_body.is_some());
         let count = leg.joints.len();
@@ -131,7 +133,7 @@ impl<'a> Robot<'a> {
         let mut about_axes = Vec::new();
         for (joint, body) in bodies.iter().enumerate() {
             let own = motion.bodies[index][joint].wrench(body);
-            let suspended = hung.wrenches[index][joint];
+            let suspended = transferred.wrenches[index][joint];
             let wrench = own.plus(&suspended);
             about_axes.push(wrench.moment.z());
             wrenches.push(wrench);
@@ -172,22 +174,22 @@ impl<'a> Robot<'a> {
             let shares = (0..forces.len()).map(share).collect();
             add_to(&mut forces, shares);
         }
-        hung.hand_on(arena, leg, &kept, &at_base);
+        transferred.transfer_to_base_body(arena, leg, &kept, &at_base);
         Some(forces)
     }
 }
 
-/// What legs hand down to the bodies that they stand on.
-struct Hung<'a> {
-    /// Of every leg, for its bodies, what the joints of carried legs leave as it is.
+/// What legs transfer to the bodies on which they are mounted.
+struct Transferred<'a> {
+    /// For the bodies of every leg, the parts of inertias of mounted legs that their joints do not move.
     inertias: Vec<Vec<Option<Inertia<'a>>>>,
-    /// And the wrenches that carried legs put on them.
+    /// For the bodies of every leg, the wrenches of mounted legs.
     wrenches: Vec<Vec<Wrench<'a>>>,
-    /// What the platform has of the ends of legs.
+    /// End masses of legs that are lumped on the platform.
     on_platform: Inertia<'a>,
 }
 
-impl<'a> Hung<'a> {
+impl<'a> Transferred<'a> {
     fn nothing(arena: &'a Arena, legs: &[Leg]) -> Self {
         let still = Wrench::zero(arena);
         let counts = || legs.iter().map(|leg| leg.joints.len());
@@ -198,7 +200,7 @@ impl<'a> Hung<'a> {
         }
     }
 
-    /// Adds to a leg's bodies what was handed down to them.
+    /// Adds the transferred inertias to a leg's bodies.
     fn add_to(&self, index: usize, bodies: &mut [Inertia<'a>]) {
         for (body, other) in bodies.iter_mut().zip(&self.inertias[index]) {
             if let Some(other) = other {
@@ -207,7 +209,7 @@ impl<'a> Hung<'a> {
         }
     }
 
-    /// Counts a mass at the point where a leg ends to what it ends on.
+    /// Adds an end mass to the body or platform at which the leg ends.
     fn add_end_mass(&mut self, leg: &Leg, end_mass: &Inertia<'a>) {
         let onto = match leg.end_body {
             Some(body) => self.inertias[body.leg][body.joint]
@@ -217,8 +219,15 @@ impl<'a> Hung<'a> {
         *onto = with(end_mass, onto);
     }
 
-    /// Puts what a leg's first joints leave as it is, and the wrench at its base, on the body that it stands on.
-    fn hand_on(&mut self, arena: &'a Arena, leg: &Leg, kept: &Inertia<'a>, at_base: &Wrench<'a>) {
+    /// Transfers to the body on which a leg is mounted the wrench at the leg's base, and the inertia that the leg's first
+    /// joints do not move.
+    fn transfer_to_base_body(
+        &mut self,
+        arena: &'a Arena,
+        leg: &Leg,
+        kept: &Inertia<'a>,
+        at_base: &Wrench<'a>,
+    ) {
         let Some(carrier) = leg.base_body else { return };
         let kept = on_carrier(arena, leg, kept);
         let onto = &mut self.inertias[carrier.leg][carrier.joint];
@@ -247,8 +256,8 @@ impl<'a> BodyMotion<'a> {
 }
 
 impl<'a> Chain<'_, 'a> {
-    /// Takes from the last body of a leg that ends in a point the mass that leaves it no first moment towards that
-    /// point, and gives it in the frame of what the leg ends on, where it is at the same place.
+    /// Takes a mass at the end point from the last body of a leg, so that the rest has no first moment towards that point.
+    /// The mass is returned in the frame of the body at which the leg ends.
     fn take_end_mass(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
         let Some(End::Point {
             at,
@@ -282,8 +291,8 @@ impl<'a> Chain<'_, 'a> {
         Some(Inertia::point(mass).moved_onto(&Inertia::zero(arena), there))
     }
 
-    /// Moves what each joint leaves as it is onto the body before it; what the first ones leave, in the axes of
-    /// the leg's base, where that moves.
+    /// Moves the part of each body's inertia that its joint does not move onto the body before it. Returned is the part
+    /// that the first joints do not move, in the axes of the leg's base, if the base moves.
     fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
         let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {

@@ -68,7 +68,7 @@ impl<'a> Robot<'a> {
                 let Some(wrench) = chains[index].base_wrench(k) else {
                     continue;
                 };
-                for (body, forces) in self.handed_down(&chains, index, wrench) {
+                for (body, forces) in self.forces_on_base_legs(&chains, index, wrench) {
                     let first = mechanism.leg_range(body.leg).start;
                     for (i, force) in forces.into_iter().enumerate() {
                         set(first + i, own.start + k, force);
@@ -82,7 +82,7 @@ impl<'a> Robot<'a> {
     }
 
     /// What a wrench at a leg's base puts on the quasi-velocities of the legs that carry it.
-    fn handed_down(
+    fn forces_on_base_legs(
         &self,
         chains: &[Chain<'_, 'a>],
         index: usize,

@@ -1,4 +1,4 @@
-//! Dynamics of the whole robot on a context: columns of identification models, projections of torques, and
+//! Dynamics of the whole robot: columns of identification models, projections of torques, and
 //! inverse dynamics with given parameters.
 
 use crate::cas::{Expr, Number};

@@ -1,4 +1,4 @@
-//! Kinematics of the whole robot on a context: positions and rates of joints, and what follows from the
+//! Kinematics of the whole robot: positions and rates of joints, and what follows from the
 //! actuators by least squares.
 
 use crate::cas::Expr;

@@ -295,7 +295,7 @@ impl<'a> Configuration<'a> {
         } else {
             "_"
         };
-        // What is named is the joints' own angle: right angles are turned back, others are told apart.
+        // Names are those of the joints' own angles: offsets of right angles are removed, others are marked.
         let (co, so) = angle.offset().cosine_and_sine();
         let is_right = co.is_zero() || so.is_zero();
         let CosineSine {

@@ -53,15 +53,15 @@ impl<'a> LegFrames<'a> {
         first_joint: usize,
         configuration: &Configuration<'a>,
         closure_frame: usize,
-        observer_frame: Option<&ObserverFrame>,
+        observer: Option<&ObserverFrame>,
     ) -> Option<Self> {
         let orientations = Orientation::of_leg(leg, first_joint, configuration)?;
-        let whole = |of: &Orientation| match observer_frame {
-            Some(observer_frame) => observer_frame.from.followed_by(of),
+        let whole = |of: &Orientation| match observer {
+            Some(observer) => observer.from.followed_by(of),
             None => Some(of.clone()),
         };
-        let axes = match observer_frame {
-            Some(observer_frame) if closure_frame == 0 => observer_frame.axes.clone(),
+        let axes = match observer {
+            Some(observer) if closure_frame == 0 => observer.axes.clone(),
             _ => whole(Orientation::intermediate_frames(&orientations).get(closure_frame)?)?,
         };
         let in_axes = |of: &Orientation| whole(of)?.relative(&axes, arena, configuration);
@@ -85,9 +85,8 @@ impl<'a> LegFrames<'a> {
                 origin,
             });
         }
-        let seen_from = observer_frame.map_or_else(Orientation::default, |observer_frame| {
-            observer_frame.axes.clone()
-        });
+        let seen_from =
+            observer.map_or_else(Orientation::default, |observer| observer.axes.clone());
         Some(Self {
             frames,
             axes: axes.relative(&seen_from, arena, configuration)?,
@@ -102,11 +101,11 @@ impl<'a> LegFrames<'a> {
         leg: &Leg,
         first_joint: usize,
         configuration: &Configuration<'a>,
-        observer_frame: &ObserverFrame,
+        observer: &ObserverFrame,
     ) -> Option<()> {
         for of in Orientation::of_leg(leg, first_joint, configuration)? {
-            let whole = observer_frame.from.followed_by(&of)?;
-            let _ = whole.relative(&observer_frame.axes, arena, configuration)?;
+            let whole = observer.from.followed_by(&of)?;
+            let _ = whole.relative(&observer.axes, arena, configuration)?;
         }
         Some(())
     }

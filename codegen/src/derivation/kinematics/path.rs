@@ -181,7 +181,7 @@ impl<'a> Step<'a> {
         let before = seen(known, axes, antecedent(known.mechanism, at))?;
         let link = match leg.joints[at.joint].antecedent {
             Some(_) => own,
-            // The leg's base frame stands in the body that carries it.
+            // The leg's base frame is fixed on the body on which the leg is mounted.
             None => {
                 let turned = constant_rotation(arena, leg.base.rotation);
                 Vector3::constant(arena, leg.base.at) + turned * own

@@ -103,9 +103,10 @@ impl<'a> Tilt<'a> {
     }
 }
 
-/// R S Rᵀ of a symmetric matrix S and a turn R about a coordinate axis, in ten operations for four of the
-/// entries and six for the two beside: with e = s (S_ii - S_jj) + 2 c S_ij, the diagonal loses and gains
-/// s e, and the entry beside it becomes c e - S_ij.
+/// R S Rᵀ of a symmetric matrix S and a rotation R about a coordinate axis.
+///
+/// It takes ten operations for the 2 x 2 block of the other two axes and six for the remaining entries. With
+/// e = s (S_ii - S_jj) + 2 c S_ij the diagonal changes by -s e and s e, and the entry S_ij becomes c e - S_ij.
 pub(crate) fn turned<'a>(
     matrix: Matrix3<'a>,
     axis: usize,

@@ -121,7 +121,7 @@ impl<'a> Robot<'a> {
                 leg,
                 first_joint,
                 configuration,
-                observer_frame,
+                observer,
             );
         }
         let closure_frame = formulation

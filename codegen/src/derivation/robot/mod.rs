@@ -42,19 +42,19 @@ pub struct Robot<'a> {
     /// The components of the platform's velocity in the directions of its pose: the independent ones, or all
     /// six of a platform with parasitic motion.
     pub(crate) free: Vec<TwistCoordinate>,
-    /// How these follow from the independent ones, of a platform with parasitic motion.
+    /// How these follow from the independent ones, if the platform has parasitic motion.
     pub(crate) parasitic_motion: Option<ParasiticMotion<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
-    /// Whether what acts on a chain's joints goes to the skeleton as one force at the chain's end.
+    /// See [`Formulation::at_end`].
     pub(crate) at_end: bool,
-    /// Whether what acts on a platform with parasitic motion meets its independent coordinates in its own axes.
+    /// See [`Formulation::own_axes`].
     pub(crate) own_axes: bool,
-    /// Whether legs that end in a point lend masses there to what they end on.
+    /// See [`Formulation::lump_end_masses`].
     pub(crate) lump_end_masses: bool,
-    /// Whether rows of legs on a platform with parasitic motion share the velocities of the legs' ends.
+    /// See [`Formulation::by_ends`].
     pub(crate) by_ends: bool,
-    /// Whether rates of legs are taken from the independent rates by the rows of their reduced Jacobians.
+    /// See [`Formulation::by_rows`].
     by_rows: bool,
     /// Conditions for the model to have a value.
     pub guards: Vec<Guard<'a>>,

@@ -1,4 +1,4 @@
-//! What programs in lanes give, leg by leg, beside what straight ones give.
+//! Results of programs in lanes, compared with those of straight programs.
 
 use crate::cas::InputElement;
 use crate::derivation::{BodyParameter, ROWS, SUMS};
@@ -15,11 +15,11 @@ const STATES: usize = 4;
 /// The values of an input by its name.
 type Given<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
 
-/// How small at home what a leg divides by may be, beside what it is at other states.
+/// A divisor of a leg vanishes at home if it is below this part of its magnitude at other states.
 const VANISHING: f64 = 1e-4;
 
-/// Whether no leg divides by what vanishes at home: the numbers of the leg that stands for all are not those of any, so
-/// what is zero for these may have been none for it.
+/// Whether no leg divides by a value that vanishes at home. The template has numbers of no leg, so a value that is zero
+/// for a leg may not have been zero for the template.
 pub(super) fn is_regular_at_home(assembler: &Assembler<'_>, lanes: &Lanes) -> bool {
     let guards = lanes.program.guards.iter().zip(&lanes.homes);
     let of_legs = guards.filter(|(guard, _)| matches!(guard.condition, Condition::Leg { .. }));

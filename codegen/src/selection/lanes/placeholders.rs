@@ -1,31 +1,32 @@
-//! Numbers and angles that stand for those in which legs differ.
+//! Placeholders for the numbers and angles in which legs differ.
 //!
-//! What stands for a leg's own number is close to the first leg's, so that its working mode stays, and has no relation
-//! to any other number. Relations that hold in every leg are kept: two numbers that are equal or opposite in all legs
-//! have one that stands for both, and so have two angles whose sum or difference is the same in all legs, such as an axis'
-//! direction and the offset that takes it back.
+//! A placeholder is close to the first leg's number, so that the working mode stays, and otherwise unrelated to any
+//! other number. Relations that hold in every leg are kept. Two numbers that are equal or opposite in all legs share a
+//! placeholder. So do two angles whose sum or difference is the same in all legs, such as the direction of an axis and
+//! the offset that compensates it.
 
 use crate::cas::{Angle, Number, Ratio, Stream};
 
-/// A number in which legs differ.
+/// A number that differs between legs.
 #[derive(Debug)]
 pub(super) struct Constant {
-    /// What stands for it; none if it is a sign.
+    /// Its placeholder; none if it is a sign.
     pub(super) number: Option<Number>,
-    /// What it is in each leg.
+    /// Its value in each leg.
     pub(super) values: Vec<f64>,
-    /// What it is called.
+    /// Its name.
     pub(super) name: String,
 }
 
-/// What stands for what.
+/// All placeholders.
 #[derive(Debug)]
 pub(super) struct Placeholders {
-    /// All numbers that the legs have of their own.
+    /// All numbers that differ between legs.
     pub(super) constants: Vec<Constant>,
     stream: Stream,
-    /// What the legs have, and what stands for it.
+    /// The numbers of the legs, with their placeholder.
     numbers: Vec<(Vec<Number>, Number)>,
+    /// The angles of the legs, with their placeholder.
     angles: Vec<(Vec<Angle>, Angle)>,
 }
 
@@ -39,7 +40,7 @@ impl Placeholders {
         }
     }
 
-    /// What stands for the legs' numbers; their own where all have the same.
+    /// The placeholder of the legs' numbers; the number itself if all legs have the same.
     pub(super) fn number(&mut self, all: Vec<Number>, name: &str) -> Number {
         let first = all[0];
         if all.iter().all(|number| *number == first) {
@@ -63,7 +64,7 @@ impl Placeholders {
         })
     }
 
-    /// What stands for the legs' angles; their own where all have the same.
+    /// The placeholder of the legs' angles; the angle itself if all legs have the same.
     pub(super) fn angle(&mut self, all: Vec<Angle>, name: &str) -> Option<Angle> {
         let first = all[0];
         if all.iter().all(|angle| *angle == first) {
@@ -94,7 +95,7 @@ impl Placeholders {
         Some(angle)
     }
 
-    /// A number that stands for those of the legs, unless it or its negative does already.
+    /// Adds a placeholder, unless it or its negative is one already.
     fn add(&mut self, number: Number, values: Vec<f64>, name: String) {
         let mut numbers = self.constants.iter().filter_map(|c| c.number);
         if !numbers

@@ -1,4 +1,4 @@
-//! A leg that stands for all legs of its kind: the numbers in which they differ are elements of an array.
+//! One leg as a template of all legs of its kind: the numbers in which they differ are elements of an array.
 
 use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
 use super::placeholders::{Constant, Placeholders};
@@ -9,10 +9,10 @@ use crate::mechanism::{Leg, Mechanism};
 /// The name of the array.
 pub(super) const ARRAY: &str = "of_leg";
 
-/// A robot whose first leg stands for all.
+/// A robot whose first leg is the template of all legs.
 #[derive(Debug)]
 pub(super) struct Template {
-    /// The robot; where the legs differ, the first one has numbers of no meaning.
+    /// The robot; where the legs differ, the first one has placeholders.
     pub(super) mechanism: Mechanism,
     /// The numbers in which they differ.
     constants: Vec<Constant>,
@@ -61,7 +61,7 @@ impl Template {
         self.constants.len()
     }
 
-    /// Lets elements of the array stand for the numbers wherever they come up in a graph.
+    /// Replaces the placeholders in a graph by elements of the array.
     pub(super) fn substitute_placeholders(&self, arena: &Arena) {
         for (index, constant) in self.constants.iter().enumerate() {
             match constant.number {
@@ -114,7 +114,7 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     (0..first.len()).map(sign).collect()
 }
 
-/// What the leg that stands for all is called: as no leg is.
+/// The name of the template, which no leg has.
 fn name(legs: &[Leg]) -> String {
     let mut name = "leg".to_owned();
     while legs.iter().any(|leg| leg.name == name) {

@@ -155,7 +155,7 @@ fn two_links<'a>(
     let (x, y) = (named(end.x(), "d_x"), named(end.y(), "d_y"));
     let square = named(x * x + y * y, "rho_squared");
     let reciprocal = square.reciprocal();
-    // What is made of lengths is a number, unless something stands for them.
+    // Expressions of lengths are numbers, unless inputs replace the lengths.
     let (one, half) = (Number::ONE, Number::ratio(Ratio::new(1, 2)?));
     let over = |number: Number, divisor: Expr<'a>| match divisor.as_number() {
         Some(known) => arena.number(number / known),

@@ -145,10 +145,8 @@ pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<us
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
         .map(|frames| Orientation::intermediate_frames(&frames))
-        .filter(|frames_on_path| keep_rows(mechanism, leg, &arena, &configuration, frames_on_path))
-        .map_or(vec![0], |frames_on_path| {
-            distinct(&frames_on_path, &arena, &configuration)
-        })
+        .filter(|axes| keep_rows(mechanism, leg, &arena, &configuration, axes))
+        .map_or(vec![0], |axes| distinct(&axes, &arena, &configuration))
 }
 
 /// The numbers of those of some axes that are not others of them with names and signs of their axes exchanged,
