@@ -14,11 +14,11 @@ pub(crate) use form::Missing;
 pub use group::{Group, serves_model};
 pub use name::UnknownFunction;
 
-use crate::derivation::{JointsBy, MotionInput};
+use crate::derivation::{FunctionForm, JointsBy, MotionInput};
 use crate::mechanism::Mechanism;
 use form::Forms;
 use name::{Meant, help, meant};
-use overact_core::{Columns, Function};
+use overact_core::Columns;
 
 /// Functions that are wanted, and in which forms.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -179,13 +179,13 @@ impl<'a> DerivationContext<'a, '_> {
 }
 
 /// A direction without the constant by which both components are multiplied.
-fn unscaled(direction: CosineSine<'_>) -> CosineSine<'_> {
+fn unscaled<'a>(direction: CosineSine<'a>) -> CosineSine<'a> {
     let (a, cosine) = direction.cosine.factor_and_base();
     let (b, sine) = direction.sine.factor_and_base();
     if a.value().abs() != b.value().abs() {
         return direction;
     }
-    let signed = |sign: f64, base: Expr<'_>| if sign < 0.0 { -base } else { base };
+    let signed = |sign: f64, base: Expr<'a>| if sign < 0.0 { -base } else { base };
     CosineSine {
         cosine: signed(a.value(), cosine),
         sine: signed(b.value(), sine),

@@ -1,7 +1,7 @@
 //! Generalised forces of given parameters: the columns of the identification model, added up before the projection.
 
 use super::Projection;
-use crate::cas::{Arena, Expr, Number, Vector3};
+use crate::cas::Expr;
 use crate::derivation::bodies::motion::RobotMotion;
 use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
 use crate::derivation::kinematics::spatial::Wrench;

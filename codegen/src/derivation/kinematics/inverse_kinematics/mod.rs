@@ -22,9 +22,9 @@ use crate::cas::{Arena, Direction, Expr, Matrix3, SymbolId, Vector3};
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{End, Home, Leg, Mechanism};
 
-pub(crate) use equations::equations;
-pub(crate) use peeling::advance;
-pub(crate) use polynomial::at_zero;
+pub(in crate::derivation) use equations::equations;
+pub(in crate::derivation) use peeling::advance;
+pub(in crate::derivation) use polynomial::at_zero;
 
 /// A condition for the pose to be within reach: the expression must not be negative.
 #[derive(Debug, Clone, Copy)]

@@ -245,17 +245,23 @@ fn learn_slide<'a>(
 }
 
 /// Cosine and sine from two equations.
-fn pair<'a>(first: Linear<'a>, second: Linear<'a>) -> (Expr<'a>, Expr<'a>) {
+fn pair<'a>(first: Linear<'a>, second: Linear<'a>) -> CosineSine<'a> {
     if first.a.is_zero() && second.b.is_zero() {
-        return (second.d / second.a, first.d / first.b);
+        return CosineSine {
+            cosine: second.d / second.a,
+            sine: first.d / first.b,
+        };
     }
     if first.b.is_zero() && second.a.is_zero() {
-        return (first.d / first.a, second.d / second.b);
+        return CosineSine {
+            cosine: first.d / first.a,
+            sine: second.d / second.b,
+        };
     }
     let reciprocal = (first.a * second.b - first.b * second.a).reciprocal();
     let cosine = (first.d * second.b - first.b * second.d) * reciprocal;
     let sine = (first.a * second.d - first.d * second.a) * reciprocal;
-    (cosine, sine)
+    CosineSine { cosine, sine }
 }
 
 /// Cosine and sine from one equation, with the sign that w has at home, and the radicand that must
@@ -265,7 +271,7 @@ fn root<'a>(
     Linear { a, b, d }: Linear<'a>,
     w_at_home: f64,
     configuration: &mut Configuration<'a>,
-) -> ((Expr<'a>, Expr<'a>), Option<Expr<'a>>) {
+) -> (CosineSine<'a>, Option<Expr<'a>>) {
     let mut root = |radicand: Expr<'a>, is_positive: bool| {
         configuration.root(task.first_joint, task.home, radicand, is_positive)
     };
@@ -273,20 +279,24 @@ fn root<'a>(
     if d.is_zero() {
         // w² = a² + b²: the turn is normal to (a, b).
         let reciprocal = root(a * a + b * b, is_positive).reciprocal();
-        return ((b * reciprocal, -a * reciprocal), None);
+        let turned = CosineSine {
+            cosine: b * reciprocal,
+            sine: -a * reciprocal,
+        };
+        return (turned, None);
     }
     let one = task.arena.one();
     if a.is_zero() {
         let sine = d / b;
         let radicand = one - sine * sine;
         let cosine = root(radicand, is_positive == (task.at_home(b) > 0.0));
-        return ((cosine, sine), Some(radicand));
+        return (CosineSine { cosine, sine }, Some(radicand));
     }
     if b.is_zero() {
         let cosine = d / a;
         let radicand = one - cosine * cosine;
         let sine = root(radicand, is_positive != (task.at_home(a) > 0.0));
-        return ((cosine, sine), Some(radicand));
+        return (CosineSine { cosine, sine }, Some(radicand));
     }
     let square = a * a + b * b;
     let reciprocal = square.reciprocal();
@@ -294,5 +304,5 @@ fn root<'a>(
     let w = root(radicand, is_positive);
     let cosine = (a * d + b * w) * reciprocal;
     let sine = (b * d - a * w) * reciprocal;
-    ((cosine, sine), Some(radicand))
+    (CosineSine { cosine, sine }, Some(radicand))
 }
