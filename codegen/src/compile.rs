@@ -2,7 +2,7 @@
 
 use crate::Effort;
 use crate::choice::{Chosen, Missing};
-use crate::derivation::{MotionInput, Selection, Underivable, function_name, inventory};
+use crate::derivation::{FunctionForm, Selection, Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::float::Float;
@@ -11,7 +11,6 @@ use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Forms, Search};
-use overact_core::Function;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.
@@ -79,11 +78,12 @@ fn chosen(
     mechanism: &Mechanism,
     selection: &Selection,
     request: &Request<'_>,
-) -> Result<(Vec<(Function, MotionInput)>, Chosen), Underivable> {
+) -> Result<(Vec<FunctionForm>, Chosen), Underivable> {
     let mut offered = inventory(mechanism, selection.joints);
-    offered.retain(|(function, _)| {
-        let is_told = function.columns().is_some() || function.is_of_base_parameters();
-        selection.values.is_none() || !is_told
+    offered.retain(|form| {
+        let function = form.function;
+        let has_parameters = function.columns().is_some() || function.is_of_base_parameters();
+        selection.values.is_none() || !has_parameters
     });
     let chosen = match request.functions {
         Some(choice) if selection.values.is_some() && choice.columns().is_some() => {
@@ -94,8 +94,8 @@ fn chosen(
             .map_err(not_offered)?,
         None => Chosen::all(&offered),
     };
-    offered.retain(|&(function, from)| {
-        chosen.functions.contains(&(function, from)) && (request.wanted)(mechanism, function, from)
+    offered.retain(|form| {
+        chosen.functions.contains(form) && (request.wanted)(mechanism, form.function, form.from)
     });
     Ok((offered, chosen))
 }
@@ -104,13 +104,14 @@ fn chosen(
 fn compiled(
     assembler: &Assembler<'_>,
     request: &Request<'_>,
-    function: Function,
-    from: MotionInput,
+    form: FunctionForm,
 ) -> Result<CompiledFunction, Underivable> {
+    let FunctionForm { function, from } = form;
     let program = Forms::new(*assembler, function, from).cheapest()?;
-    let lanes = match request.side_by_side && request.float == Float::F64 {
-        true => selection::beside(assembler, function, from, &program),
-        false => None,
+    let lanes = if request.side_by_side && request.float == Float::F64 {
+        selection::beside(assembler, function, from, &program)
+    } else {
+        None
     };
     let mechanism = assembler.mechanism;
     Ok(CompiledFunction::new(
@@ -143,10 +144,10 @@ fn derived(
     };
     let (offered, chosen) = chosen(&mechanism, &selection, request)?;
     let done = AtomicUsize::new(0);
-    let functions = parallel::map(&offered, |&(function, from)| {
-        let name = function_name(function, from, mechanism.is_tree());
+    let functions = parallel::map(&offered, |&form| {
+        let name = function_name(form.function, form.from, mechanism.is_tree());
         tell(done.load(Ordering::Relaxed), offered.len(), &name);
-        let compiled = compiled(&assembler, request, function, from)?;
+        let compiled = compiled(&assembler, request, form)?;
         done.fetch_add(1, Ordering::Relaxed);
         Ok(compiled)
     });

@@ -40,7 +40,7 @@ mod parallel;
 mod request;
 mod runtime;
 mod selection;
-mod whole;
+mod total_cost;
 mod writing;
 
 pub use checked::{Checked, check};
@@ -53,7 +53,7 @@ pub use overact_description::{self as description, Diagnostics, Effort, Source, 
 pub use request::{Progress, Request};
 pub use runtime::{NotAPath, Runtime};
 pub use selection::BaseParameter;
-pub use whole::{Iteration, SideBySide, WholeCost};
+pub use total_cost::{Iteration, SideBySide, TotalCost};
 
 /// Versions of the crates that decide what is generated.
 pub const VERSIONS: [&str; 2] = [env!("CARGO_PKG_VERSION"), overact_core::VERSION];

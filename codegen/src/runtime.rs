@@ -31,11 +31,12 @@ impl Runtime {
             .iter()
             .map(|segment| segment.ident.to_string());
         let is_relative = names.any(|name| ["self", "super", "Self"].contains(&&*name));
-        match is_relative {
-            true => Err(refused()),
-            false => Ok(Self {
+        if is_relative {
+            Err(refused())
+        } else {
+            Ok(Self {
                 path: path.trim().to_owned(),
-            }),
+            })
         }
     }
 

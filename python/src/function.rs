@@ -317,8 +317,9 @@ impl Call<'_> {
 /// The names of a robot's functions, in the order of the table of functions.
 pub(crate) fn names(model: &overact_codegen::RobotModel) -> Vec<String> {
     let all = inventory(&model.mechanism, model.selection.joints);
-    let name = |(function, from)| function_name(function, from, model.is_tree());
-    all.into_iter().map(name).collect()
+    all.iter()
+        .map(|form| function_name(form.function, form.from, model.is_tree()))
+        .collect()
 }
 
 /// A function as documentation wants it: full name, what it is evaluated from, its inputs, what counts its

@@ -8,15 +8,18 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// The order of a crate's modules, from the bottom up.
-struct House {
+/// The order of modules in a crate, or in one module of it, from the bottom up.
+struct LayerOrder {
     folder: &'static str,
+    /// The module; empty for the crate itself.
+    module: &'static str,
     order: &'static [&'static str],
 }
 
-const HOUSES: [House; 8] = [
-    House {
+const LAYER_ORDERS: [LayerOrder; 9] = [
+    LayerOrder {
         folder: "description",
+        module: "",
         order: &[
             "diagnostic",
             "effort",
@@ -29,8 +32,9 @@ const HOUSES: [House; 8] = [
             "parameters_file",
         ],
     },
-    House {
+    LayerOrder {
         folder: "codegen",
+        module: "",
         order: &[
             "parallel",
             "float",
@@ -42,7 +46,7 @@ const HOUSES: [House; 8] = [
             "evaluation",
             "selection",
             "model",
-            "whole",
+            "total_cost",
             "choice",
             "request",
             "checked",
@@ -53,8 +57,32 @@ const HOUSES: [House; 8] = [
             "internals",
         ],
     },
-    House {
+    LayerOrder {
+        folder: "codegen",
+        module: "derivation",
+        order: &[
+            "motion_input",
+            "function_form",
+            "guard",
+            "parameter",
+            "selection",
+            "underivable",
+            "names",
+            "linear_algebra",
+            "kinematics",
+            "closure",
+            "bodies",
+            "robot",
+            "context",
+            "dynamics",
+            "regressor",
+            "forward",
+            "functions",
+        ],
+    },
+    LayerOrder {
         folder: "identification",
+        module: "",
         order: &[
             "error",
             "significant",
@@ -82,8 +110,9 @@ const HOUSES: [House; 8] = [
             "factors",
         ],
     },
-    House {
+    LayerOrder {
         folder: "simulation",
+        module: "",
         order: &[
             "error",
             "trajectory",
@@ -101,8 +130,9 @@ const HOUSES: [House; 8] = [
             "log",
         ],
     },
-    House {
+    LayerOrder {
         folder: "report",
+        module: "",
         order: &[
             "text",
             "units",
@@ -122,8 +152,9 @@ const HOUSES: [House; 8] = [
             "whole",
         ],
     },
-    House {
+    LayerOrder {
         folder: "robot",
+        module: "",
         order: &[
             "counted",
             "drawing",
@@ -156,8 +187,9 @@ const HOUSES: [House; 8] = [
             "factors",
         ],
     },
-    House {
+    LayerOrder {
         folder: "interchange",
+        module: "",
         order: &[
             "options",
             "files",
@@ -177,8 +209,9 @@ const HOUSES: [House; 8] = [
             "export",
         ],
     },
-    House {
+    LayerOrder {
         folder: "cli",
+        module: "",
         order: &[
             "failure",
             "names",
@@ -222,27 +255,39 @@ fn crate_of(folder: &'static str) -> &'static [Module] {
     })
 }
 
-/// What is wrong with the imports of a file, by the order of its crate.
-fn wrong(house: &House, module: &Module) -> Vec<String> {
-    let place = |name: &str| house.order.iter().position(|known| *known == name);
-    let own = module.path.first().map_or("", String::as_str);
-    let name = module.path.join("/");
-    let Some(floor) = place(own) else {
-        return vec![format!(
-            "`{own}` has no place in the order of {}",
-            house.folder
-        )];
-    };
-    let first = module.imports.iter().filter_map(|path| path.first());
-    let first: BTreeSet<&String> = first.collect();
-    let complaint = |root: &String| match place(root) {
-        Some(other) if other <= floor => None,
-        Some(_) => Some(format!("{name} imports up, from `{root}`")),
-        None => Some(format!(
-            "{name} imports `{root}`, which is no module, from the crate's root"
-        )),
-    };
-    first.into_iter().filter_map(complaint).collect()
+impl LayerOrder {
+    /// The layer that a path leads to; `None` if it does not lead into the ordered module.
+    fn layer<'p>(&self, path: &'p [String]) -> Option<&'p String> {
+        if self.module.is_empty() {
+            return path.first();
+        }
+        path.get(1).filter(|_| path[0] == self.module)
+    }
+
+    /// The imports of a file that violate the order.
+    fn violations(&self, file: &Module) -> Vec<String> {
+        let place = |name: &str| self.order.iter().position(|known| *known == name);
+        let Some(own) = self.layer(&file.path) else {
+            return Vec::new();
+        };
+        let name = file.path.join("/");
+        let Some(floor) = place(own) else {
+            return vec![format!(
+                "`{own}` has no place in the order of {}",
+                self.folder
+            )];
+        };
+        let imported = file.imports.iter().filter_map(|path| self.layer(path));
+        let imported: BTreeSet<&String> = imported.collect();
+        let violation = |layer: &String| match place(layer) {
+            Some(other) if other <= floor => None,
+            Some(_) => Some(format!("{name} imports up, from `{layer}`")),
+            None => Some(format!(
+                "{name} imports `{layer}`, which is no module, from the root of the order"
+            )),
+        };
+        imported.into_iter().filter_map(violation).collect()
+    }
 }
 
 /// The files of each folder that import from one another in a circle.
@@ -290,15 +335,18 @@ fn circles(modules: &[Module]) -> Vec<(String, BTreeSet<String>)> {
 #[test]
 fn imports_run_downwards() {
     let mut all = Vec::new();
-    for house in &HOUSES {
+    for layers in &LAYER_ORDERS {
         let mut seen = BTreeSet::new();
-        for module in crate_of(house.folder) {
-            seen.insert(module.path[0].clone());
-            let complaints = wrong(house, module).into_iter();
-            all.extend(complaints.map(|one| format!("{}: {one}", house.folder)));
+        for file in crate_of(layers.folder) {
+            seen.extend(layers.layer(&file.path).cloned());
+            let violations = layers.violations(file).into_iter();
+            all.extend(violations.map(|one| format!("{}: {one}", layers.folder)));
         }
-        let gone = house.order.iter().filter(|module| !seen.contains(**module));
-        all.extend(gone.map(|module| format!("{}: there is no `{module}`", house.folder)));
+        let gone = layers
+            .order
+            .iter()
+            .filter(|module| !seen.contains(**module));
+        all.extend(gone.map(|module| format!("{}: there is no `{module}`", layers.folder)));
     }
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
@@ -307,7 +355,10 @@ fn imports_run_downwards() {
 fn no_folder_has_a_circle_of_imports() {
     const OTHERS: [&str; 4] = ["core", "runtime", "macros", "xtask"];
     let mut left = BTreeMap::new();
-    let folders = HOUSES.iter().map(|house| house.folder).chain(OTHERS);
+    let folders = LAYER_ORDERS
+        .iter()
+        .map(|layers| layers.folder)
+        .chain(OTHERS);
     for folder in folders {
         for (inside, files) in circles(crate_of(folder)) {
             left.insert(format!("{folder}/{inside}"), files);
@@ -322,12 +373,15 @@ fn no_folder_has_a_circle_of_imports() {
 
 #[test]
 fn an_import_from_above_is_seen() {
-    let house = House {
-        folder: "house",
+    let layers = LayerOrder {
+        folder: "crate",
+        module: "",
         order: &["low", "high"],
     };
-    let complaints =
-        |text: &str, file: &[&str]| wrong(&house, &Module::of(file, text, &BTreeMap::new())).len();
+    let complaints = |text: &str, file: &[&str]| {
+        let file = Module::of(file, text, &BTreeMap::new());
+        layers.violations(&file).len()
+    };
     assert_eq!(complaints("use crate::{low::A, high::B};", &["high"]), 0);
     assert_eq!(complaints("use crate::{low::A, high::B};", &["low"]), 1);
     assert_eq!(complaints("fn a() { super::high::b(); }", &["low"]), 1);
@@ -343,6 +397,23 @@ fn an_import_from_above_is_seen() {
         0
     );
     assert_eq!(complaints("", &["attic"]), 1);
+}
+
+#[test]
+fn an_import_from_above_is_seen_inside_a_module() {
+    let layers = LayerOrder {
+        folder: "crate",
+        module: "room",
+        order: &["low", "high"],
+    };
+    let complaints = |text: &str, file: &[&str]| {
+        let file = Module::of(file, text, &BTreeMap::new());
+        layers.violations(&file).len()
+    };
+    assert_eq!(complaints("use crate::room::low::A;", &["room", "high"]), 0);
+    assert_eq!(complaints("use super::high::A;", &["room", "low"]), 1);
+    assert_eq!(complaints("use super::high;", &["room"]), 0);
+    assert_eq!(complaints("use crate::room::high::A;", &["other"]), 0);
 }
 
 #[test]

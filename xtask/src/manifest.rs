@@ -6,7 +6,7 @@
 
 use crate::hash::hash;
 use crate::robots::Module;
-use overact_codegen::{SideBySide, WholeCost};
+use overact_codegen::{SideBySide, TotalCost};
 use std::fmt::Write as _;
 
 const HEADER: &str = "\
@@ -65,7 +65,7 @@ pub(crate) fn section_beginning(stem: &str, description: u64) -> String {
 }
 
 /// What a function takes, as entries of a table.
-fn costs(cost: &WholeCost) -> String {
+fn costs(cost: &TotalCost) -> String {
     let once = &cost.once;
     let mut text = format!(
         "operations = {}, roots = {}, pairs = {}",
@@ -111,7 +111,7 @@ fn function<'c>(code: &'c str, name: &str) -> &'c str {
 #[cfg(test)]
 mod tests {
     use super::{Module, function, text};
-    use overact_codegen::{WholeCost, lowering::Cost};
+    use overact_codegen::{TotalCost, lowering::Cost};
 
     const CODE: &str = "impl A {\n    pub fn one(x: f64) -> f64 {\n        x\n    }\n    #[must_use]\n    pub fn two(x: f64) -> f64 {\n        if x {\n        }\n    }\n}\n";
 
@@ -137,7 +137,7 @@ mod tests {
             description: 7,
             text: code.to_owned(),
             functions: ["one", "two"]
-                .map(|name| (name.to_owned(), WholeCost::from(cost)))
+                .map(|name| (name.to_owned(), TotalCost::from(cost)))
                 .to_vec(),
         };
         let before = text(&[module(CODE)], 1);

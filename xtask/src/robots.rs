@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::files::{read, stems};
 use crate::hash::hash;
-use overact_codegen::{Effort, Request, Source, WholeCost, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, TotalCost, compile_with, emission};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,7 +19,7 @@ pub(crate) struct Module {
     /// The source file.
     pub(crate) text: String,
     /// Name and cost of each function.
-    pub(crate) functions: Vec<(String, WholeCost)>,
+    pub(crate) functions: Vec<(String, TotalCost)>,
 }
 
 /// All robots' modules in the order of their names, generated on all processors.

@@ -89,8 +89,8 @@ fn differentiate<'a>(
     let derivative = match arena.op(index) {
         Op::Constant(_) | Op::Sign(_) => arena.zero(),
         Op::Symbol(id) => arena.integer(i64::from(id == symbol)),
-        Op::Cosine(id) => -(arena.cosine_and_sine(&arena.direction_at(id)).1 * factor(id)),
-        Op::Sine(id) => arena.cosine_and_sine(&arena.direction_at(id)).0 * factor(id),
+        Op::Cosine(id) => -(arena.cosine_and_sine(&arena.direction_at(id)).sine * factor(id)),
+        Op::Sine(id) => arena.cosine_and_sine(&arena.direction_at(id)).cosine * factor(id),
         Op::Add(a, b) => d(a) + d(b),
         Op::Sub(a, b) => d(a) - d(b),
         Op::Mul(a, b) => d(a) * e(b) + e(a) * d(b),
@@ -197,8 +197,8 @@ impl<'b> Substitution<'b> {
                 Some(&by) => by,
                 None => self.arena.value_of(self.arena.symbol_like(from, id)),
             },
-            Op::Cosine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).0,
-            Op::Sine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).1,
+            Op::Cosine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).cosine,
+            Op::Sine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).sine,
             Op::Add(a, b) => r(a) + r(b),
             Op::Sub(a, b) => r(a) - r(b),
             Op::Mul(a, b) => r(a) * r(b),
@@ -228,12 +228,13 @@ impl<'b> Substitution<'b> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::CosineSine;
 
     #[test]
     fn derivative_agrees_with_finite_differences() {
         let arena = Arena::new();
         let (x, q) = (arena.variable("x"), arena.angle("q"));
-        let (c, s) = arena.cosine_and_sine(&q);
+        let CosineSine { cosine: c, sine: s } = arena.cosine_and_sine(&q);
         let f = (x * c + s.squared()).sqrt() / (x + s) + s.atan2(x);
         for name in ["x", "q"] {
             let symbol = arena.symbol(name);
@@ -251,7 +252,7 @@ mod tests {
     #[test]
     fn substitution_replaces_values_and_keeps_angles() {
         let (from, to) = (Arena::new(), Arena::new());
-        let (c, _) = from.cosine_and_sine(&from.angle("q"));
+        let c = from.cosine_and_sine(&from.angle("q")).cosine;
         let f = from.variable("x") * c;
         let g = Substitution::new(&to)
             .value(from.symbol("x"), to.integer(3))

@@ -1,11 +1,8 @@
 //! Handles with operators: construction simplifies, so that zeros, ones and double negations never
 //! survive it.
 
-use super::Angle;
 use super::arena::{Arena, Handle, Op, negative_name};
-use super::direction::Direction;
 use overact_exact::Number;
-use overact_exact::Ratio;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An expression: a `Copy` handle to a node of an [`Arena`].
@@ -301,49 +298,5 @@ impl<'a> std::iter::Sum for Expr<'a> {
             .next()
             .expect("a sum of expressions has at least one term");
         iter.fold(first, |sum, term| sum + term)
-    }
-}
-
-impl Arena {
-    /// Cosine and sine of an angle. The signs of the angle and multiples of a right angle are taken
-    /// out, so that cos(x + 90 deg) is -sin(x).
-    pub fn cosine_and_sine(&self, direction: &Direction) -> (Expr<'_>, Expr<'_>) {
-        if direction.is_constant() {
-            let (cosine, sine) = direction.offset().cosine_and_sine();
-            return (self.number(cosine), self.number(sine));
-        }
-        if direction.terms()[0].1.value() < 0.0 {
-            let (cosine, sine) = self.cosine_and_sine(&direction.negative());
-            return (cosine, -sine);
-        }
-        let (quarters, rest) = split_quarters(direction.offset());
-        let reduced = direction.without_offset().plus(&Direction::constant(rest));
-        let reduced = reduced.unwrap_or_else(|| direction.clone());
-        let id = self.direction(&reduced);
-        let cosine = self.expr(self.intern(Op::Cosine(id)));
-        let sine = self.expr(self.intern(Op::Sine(id)));
-        match quarters {
-            0 => (cosine, sine),
-            1 => (-sine, cosine),
-            2 => (-cosine, -sine),
-            _ => (sine, -cosine),
-        }
-    }
-
-    /// The direction of an angle symbol.
-    pub fn angle(&self, name: &str) -> Direction {
-        Direction::symbol(self.symbol(name))
-    }
-}
-
-/// Splits an angle into right angles (0 to 3) and a rest that is no multiple of one.
-fn split_quarters(angle: Angle) -> (u8, Angle) {
-    let (half_turns, radians) = angle.parts();
-    let doubled = half_turns.times(Ratio::integer(2));
-    match doubled {
-        Some(d) if d.denominator() == 1 => {
-            (d.numerator().rem_euclid(4) as u8, Angle::radians(radians))
-        }
-        _ => (0, angle),
     }
 }

@@ -16,6 +16,7 @@
 
 pub mod arena;
 pub mod calculus;
+pub mod cosine_sine;
 pub mod direction;
 mod divisors;
 pub mod expr;
@@ -27,6 +28,7 @@ pub mod vector;
 
 pub use arena::{Arena, InputElement};
 pub use calculus::Substitution;
+pub use cosine_sine::CosineSine;
 pub use direction::{Direction, SymbolId};
 pub use expr::Expr;
 pub use overact_exact::{Angle, Number, Ratio, field, hasher};

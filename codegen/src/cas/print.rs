@@ -76,8 +76,10 @@ mod tests {
         let arena = Arena::new();
         let (a, b) = (arena.angle("a"), arena.angle("b"));
         let sum = a.plus(&b).unwrap();
-        let ((ca, sa), (cb, sb)) = (arena.cosine_and_sine(&a), arena.cosine_and_sine(&b));
-        let (cs, ss) = arena.cosine_and_sine(&sum);
+        let [(ca, sa), (cb, sb), (cs, ss)] = [a, b, sum].map(|angle| {
+            let both = arena.cosine_and_sine(&angle);
+            (both.cosine, both.sine)
+        });
         assert!((ca.squared() + sa.squared()).is_one());
         assert!((ca * cb - sa * sb - cs).is_zero());
         assert_eq!(sa * cb + ca * sb, ss);

@@ -1,7 +1,7 @@
 //! The functions of a robot that are generated: those that are wanted, and what they call.
 
 use super::group::serves_model;
-use crate::derivation::{JointsBy, MotionInput};
+use crate::derivation::{FunctionForm, JointsBy, MotionInput};
 use crate::mechanism::Mechanism;
 use overact_core::Function;
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Chosen {
     /// The functions.
-    pub(crate) functions: BTreeSet<(Function, MotionInput)>,
+    pub(crate) functions: BTreeSet<FunctionForm>,
     /// Whether forward kinematics is among them.
     pub(crate) forward: bool,
     /// Whether all are among them that `overact::Model` is asked for.
@@ -19,7 +19,7 @@ pub(crate) struct Chosen {
 
 impl Chosen {
     /// All of an inventory.
-    pub(crate) fn all(inventory: &[(Function, MotionInput)]) -> Self {
+    pub(crate) fn all(inventory: &[FunctionForm]) -> Self {
         Self {
             functions: inventory.iter().copied().collect(),
             forward: true,
@@ -32,39 +32,38 @@ impl Chosen {
         &mut self,
         mechanism: &Mechanism,
         joints: JointsBy,
-        inventory: &[(Function, MotionInput)],
+        inventory: &[FunctionForm],
     ) {
-        let is_found = |(function, from): &(Function, MotionInput)| {
-            *from == MotionInput::Actuators && *function != Function::PoseInClosedForm
+        let is_found = |form: &FunctionForm| {
+            form.from == MotionInput::Actuators && form.function != Function::PoseInClosedForm
         };
         self.forward |= self.functions.iter().any(is_found);
         let mut needed = Vec::new();
         if self.forward && !mechanism.is_tree() {
             needed.extend([
-                (Function::ActuatorPositions, MotionInput::Pose),
-                (Function::PoseStep, MotionInput::Pose),
-                (Function::InverseJacobian, MotionInput::Pose),
-                (Function::PoseInClosedForm, MotionInput::Actuators),
-                (Function::BlockedError, MotionInput::Pose),
-                (Function::BlockedJacobian, MotionInput::Pose),
+                FunctionForm::new(Function::ActuatorPositions, MotionInput::Pose),
+                FunctionForm::new(Function::PoseStep, MotionInput::Pose),
+                FunctionForm::new(Function::InverseJacobian, MotionInput::Pose),
+                FunctionForm::new(Function::PoseInClosedForm, MotionInput::Actuators),
+                FunctionForm::new(Function::BlockedError, MotionInput::Pose),
+                FunctionForm::new(Function::BlockedJacobian, MotionInput::Pose),
             ]);
         }
-        let from_pose = |one: &(Function, MotionInput)| one.1 != MotionInput::Joints;
+        let from_pose = |one: &FunctionForm| one.from != MotionInput::Joints;
         let iterates = self.forward || self.functions.iter().any(from_pose);
         if joints == JointsBy::Newton && iterates {
             needed.extend([
-                (Function::Joints, MotionInput::Pose),
-                (Function::ClosureError, MotionInput::Joints),
-                (Function::LegsJacobian, MotionInput::Joints),
+                FunctionForm::new(Function::Joints, MotionInput::Pose),
+                FunctionForm::new(Function::ClosureError, MotionInput::Joints),
+                FunctionForm::new(Function::LegsJacobian, MotionInput::Joints),
             ]);
         }
-        let has = |one: &(Function, MotionInput)| inventory.contains(one);
+        let has = |one: &FunctionForm| inventory.contains(one);
         self.functions.extend(needed.into_iter().filter(has));
         let mut served = inventory.iter();
         self.is_model = self.forward
-            && served.all(|&(function, from)| {
-                let one = (function, from);
-                !serves_model(mechanism, function, from) || self.functions.contains(&one)
+            && served.all(|form| {
+                !serves_model(mechanism, form.function, form.from) || self.functions.contains(form)
             });
     }
 }

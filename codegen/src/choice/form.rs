@@ -2,12 +2,9 @@
 
 use super::group::Group;
 use super::name::{Meant, meant, reason};
-use crate::derivation::{MotionInput, function_name};
+use crate::derivation::{FunctionForm, MotionInput, function_name};
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Extent, Function};
-
-/// A function of the table, and what it is evaluated from.
-type Form = (Function, MotionInput);
 
 /// A name that a robot has no function for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,7 +42,7 @@ pub(super) struct Forms<'a> {
     /// None for each function's own.
     pub(super) from: &'a [MotionInput],
     pub(super) columns: Option<Columns>,
-    pub(super) inventory: &'a [Form],
+    pub(super) inventory: &'a [FunctionForm],
 }
 
 impl Forms<'_> {
@@ -55,20 +52,21 @@ impl Forms<'_> {
         self.tree || self.from.is_empty() || self.from.contains(&from)
     }
 
-    fn takes(&self, (function, from): Form) -> bool {
+    fn takes(&self, form: FunctionForm) -> bool {
         let is_wanted = |own| self.columns.is_none_or(|wanted| wanted == own);
-        self.has_source(from) && kind(function).is_none_or(is_wanted)
+        self.has_source(form.from) && kind(form.function).is_none_or(is_wanted)
     }
 
     /// All functions of the robot in these forms.
     ///
     /// # Errors
-    /// There is none.
-    pub(super) fn all(&self) -> Result<Vec<Form>, Missing> {
+    /// No function has one of these forms.
+    pub(super) fn all(&self) -> Result<Vec<FunctionForm>, Missing> {
         let all = self.filtered(|_| true);
-        match all.is_empty() {
-            true => Err(Missing::of(format!("has no function {}", self.described()))),
-            false => Ok(all),
+        if all.is_empty() {
+            Err(Missing::of(format!("has no function {}", self.described())))
+        } else {
+            Ok(all)
         }
     }
 
@@ -76,12 +74,16 @@ impl Forms<'_> {
     ///
     /// # Errors
     /// A function that this robot has not got in the form that is wanted.
-    pub(super) fn wanted(&self, name: &str, found: Option<Meant>) -> Result<Vec<Form>, Missing> {
+    pub(super) fn wanted(
+        &self,
+        name: &str,
+        found: Option<Meant>,
+    ) -> Result<Vec<FunctionForm>, Missing> {
         let wanted = match found {
             Some(Meant::Forward) => return Ok(Vec::new()),
             Some(Meant::Group(group)) => self.filtered(|form| self.is_of(group, form)),
-            Some(Meant::Form(function, from)) => return self.form(name, function, from),
-            Some(Meant::Forms(function)) => self.filtered(|form| form.0 == function),
+            Some(Meant::Form(form)) => return self.form(name, form),
+            Some(Meant::Forms(function)) => self.filtered(|form| form.function == function),
             None => Vec::new(),
         };
         match (found, wanted.is_empty()) {
@@ -99,7 +101,7 @@ impl Forms<'_> {
         }
     }
 
-    fn filtered(&self, is_wanted: impl Fn(Form) -> bool) -> Vec<Form> {
+    fn filtered(&self, is_wanted: impl Fn(FunctionForm) -> bool) -> Vec<FunctionForm> {
         let forms = self.inventory.iter().copied();
         forms
             .filter(|&form| self.takes(form) && is_wanted(form))
@@ -107,25 +109,22 @@ impl Forms<'_> {
     }
 
     /// Groups name plain forms with standard columns, which stand for those that are wanted instead.
-    fn is_of(&self, group: Group, (function, from): Form) -> bool {
+    fn is_of(&self, group: Group, form: FunctionForm) -> bool {
         let function = match self.columns {
-            Some(Columns::Base) => with(function, Columns::Standard).unwrap_or(function),
-            _ => function,
+            Some(Columns::Base) => with(form.function, Columns::Standard).unwrap_or(form.function),
+            _ => form.function,
         };
         let has = |from| group.has(self.mechanism, function, from);
-        match self.from.is_empty() {
-            true => has(from),
-            false => MotionInput::ALL.into_iter().any(has),
+        if self.from.is_empty() {
+            has(form.from)
+        } else {
+            MotionInput::ALL.into_iter().any(has)
         }
     }
 
     /// The forms of a function that is named, by itself or with a form of its own.
-    fn form(
-        &self,
-        name: &str,
-        function: Function,
-        from: MotionInput,
-    ) -> Result<Vec<Form>, Missing> {
+    fn form(&self, name: &str, form: FunctionForm) -> Result<Vec<FunctionForm>, Missing> {
+        let FunctionForm { function, from } = form;
         let is_base = function.is_of_base_parameters();
         if is_base && self.columns == Some(Columns::Standard) {
             return Err(Missing {
@@ -150,30 +149,37 @@ impl Forms<'_> {
                 help: format!("leave out `from`, or ask for `{plain}`"),
             });
         }
-        let mut wanted = match is_plain && !self.tree && !self.from.is_empty() {
-            true => self.from.iter().map(|&from| (function, from)).collect(),
-            false => vec![(function, from)],
+        let mut wanted = if is_plain && !self.tree && !self.from.is_empty() {
+            self.from
+                .iter()
+                .map(|&from| FunctionForm { function, from })
+                .collect()
+        } else {
+            vec![FunctionForm { function, from }]
         };
         wanted.retain(|form| self.inventory.contains(form));
-        match wanted.is_empty() {
-            true => Err(self.absent(name, function)),
-            false => Ok(wanted),
+        if wanted.is_empty() {
+            Err(self.absent(name, function))
+        } else {
+            Ok(wanted)
         }
     }
 
     /// Why a function is not there: not at all, or not from this.
     fn absent(&self, name: &str, function: Function) -> Missing {
-        let others = self.inventory.iter().filter(|form| form.0 == function);
-        let others: Vec<&str> = others.map(|form| form.1.name()).collect();
-        match others.is_empty() {
-            true => {
-                let reason = reason(Meant::Forms(function), self.tree);
-                Missing::of(format!("has no function `{name}`{reason}"))
-            }
-            false => Missing {
+        let others = self
+            .inventory
+            .iter()
+            .filter(|form| form.function == function);
+        let others: Vec<&str> = others.map(|form| form.from.name()).collect();
+        if others.is_empty() {
+            let reason = reason(Meant::Forms(function), self.tree);
+            Missing::of(format!("has no function `{name}`{reason}"))
+        } else {
+            Missing {
                 sentence: format!("has no function `{name}` {}", self.sources()),
                 help: format!("it is evaluated from {}", others.join(", ")),
-            },
+            }
         }
     }
 

@@ -85,9 +85,10 @@ const fn is_kinematic(function: Function) -> bool {
 
 /// From what functions are evaluated that are given plain states.
 fn plain(mechanism: &Mechanism) -> MotionInput {
-    match mechanism.is_tree() {
-        false => MotionInput::Pose,
-        true => MotionInput::Joints,
+    if mechanism.is_tree() {
+        MotionInput::Joints
+    } else {
+        MotionInput::Pose
     }
 }
 

@@ -14,11 +14,11 @@ pub(crate) use form::Missing;
 pub use group::{Group, serves_model};
 pub use name::UnknownFunction;
 
-use crate::derivation::{JointsBy, MotionInput};
+use crate::derivation::{FunctionForm, JointsBy, MotionInput};
 use crate::mechanism::Mechanism;
 use form::Forms;
 use name::{Meant, help, meant};
-use overact_core::{Columns, Function};
+use overact_core::Columns;
 
 /// Functions that are wanted, and in which forms.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -58,12 +58,13 @@ impl Choice {
                 help: help(""),
             });
         }
-        match unknown.is_empty() {
-            true => Ok(Self {
+        if unknown.is_empty() {
+            Ok(Self {
                 names,
                 ..Self::default()
-            }),
-            false => Err(unknown),
+            })
+        } else {
+            Err(unknown)
         }
     }
 
@@ -110,7 +111,7 @@ impl Choice {
         &self,
         mechanism: &Mechanism,
         joints: JointsBy,
-        inventory: &[(Function, MotionInput)],
+        inventory: &[FunctionForm],
     ) -> Result<Chosen, Vec<Missing>> {
         let forms = Forms {
             tree: mechanism.is_tree(),
@@ -167,7 +168,7 @@ mod tests {
         );
         assert!(matches!(
             meant("joints", false),
-            Some(Meant::Form(Function::Joints, _))
+            Some(Meant::Form(form)) if form.function == Function::Joints
         ));
     }
 

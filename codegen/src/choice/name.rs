@@ -1,7 +1,7 @@
 //! What names of functions stand for.
 
 use super::group::Group;
-use crate::derivation::{MotionInput, function_name, sources};
+use crate::derivation::{FunctionForm, MotionInput, function_name, sources};
 use crate::diagnostic::did_you_mean;
 use overact_core::{Condition, Function};
 use std::fmt;
@@ -15,7 +15,7 @@ pub(super) enum Meant {
     Group(Group),
     Forward,
     /// The function of exactly this name.
-    Form(Function, MotionInput),
+    Form(FunctionForm),
     /// A function of the table in all its forms.
     Forms(Function),
 }
@@ -48,7 +48,7 @@ pub(super) fn meant(name: &str, tree: bool) -> Option<Meant> {
     for function in Function::ALL {
         for &from in sources(function, tree) {
             if function_name(function, from, tree) == name {
-                return Some(Meant::Form(function, from));
+                return Some(Meant::Form(FunctionForm { function, from }));
             }
         }
     }
@@ -80,10 +80,10 @@ pub(super) fn help(name: &str) -> String {
 
 /// Why a robot has not got a function.
 pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
-    let (Meant::Form(function, _) | Meant::Forms(function)) = meant else {
+    let (Meant::Form(FunctionForm { function, .. }) | Meant::Forms(function)) = meant else {
         return "";
     };
-    if tree && matches!(meant, Meant::Form(_, MotionInput::Joints)) {
+    if tree && matches!(meant, Meant::Form(form) if form.from == MotionInput::Joints) {
         return ": its joints are its pose, which the function without `_from_joints` takes";
     }
     match function.condition() {

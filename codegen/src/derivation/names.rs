@@ -4,7 +4,6 @@
 //! writes it, and to its negative as `minus_…`. Nothing here changes a program: what is named is not
 //! thereby needed. What only a reader would ask for is named in `naming`.
 
-use super::elimination::Rows;
 use crate::cas::{Expr, Vector3};
 use crate::mechanism::{Leg, TwistCoordinate};
 
@@ -74,9 +73,10 @@ impl Accelerations {
     }
 
     pub(super) fn name(self, what: &str) -> String {
-        match self.are_bias {
-            true => format!("bias_{what}"),
-            false => what.to_owned(),
+        if self.are_bias {
+            format!("bias_{what}")
+        } else {
+            what.to_owned()
         }
     }
 
@@ -91,7 +91,7 @@ impl Accelerations {
 }
 
 /// The entries of a matrix, `what_row_column`.
-pub(super) fn name_matrix<'a>(matrix: &Rows<'a>, what: &str) {
+pub(super) fn name_matrix<'a>(matrix: &[Vec<Expr<'a>>], what: &str) {
     let mut names = Names::default();
     for (i, row) in matrix.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::parameter::BodyParameter;
 use crate::cas::Number;
 
-/// What the derivation of a function needs beside the mechanism.
+/// The choices for a robot that the derivation of a function needs in addition to the mechanism.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     /// The standard parameters whose columns are not identically zero.
@@ -29,41 +29,38 @@ pub struct Selection {
     pub values: Option<Vec<(BodyParameter, f64)>>,
 }
 
-/// In which of several equal forms a robot is written; which needs the fewest operations depends on the
-/// robot.
+/// One of several equivalent forms of a robot's equations. Which needs the fewest operations depends on the robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Formulation {
-    /// The axes in which the closure of each leg is written: by number, a frame that is met on the way
-    /// from the base along the leg; 0, and none, are the base's.
-    pub stations: Vec<usize>,
-    /// The axes in which a chain's closure sees the body that it ends on: by number, a frame that is met on the way
-    /// from the body that it starts from, whose own axes are 0, and none. Where there are others, station 0 stands
-    /// for them.
-    pub seats: Vec<usize>,
+    /// For each leg, the axes in which its closure is written: the number of a frame on the path from the base along
+    /// the leg. 0, and a missing number, are the base's axes.
+    pub closure_frames: Vec<usize>,
+    /// For each chain, the axes in which its closure sees the body at its end: the number of a frame on the path from
+    /// the body at its start. 0, and a missing number, are the axes of that body. With another number, closure frame
+    /// 0 means these axes.
+    pub observer_frames: Vec<usize>,
     /// Whether axes that meet in a point share the moment about it.
     pub meeting: bool,
-    /// Whether what acts on the joints of a chain goes to the skeleton as one force at the chain's end, rather than
-    /// joint by joint. Legs of a platform always have it so.
+    /// Whether the forces of a chain act on the skeleton as one force at the chain's end, rather than joint by joint.
+    /// For legs of a platform this is always so.
     pub at_end: bool,
-    /// Whether what acts on a platform that moves aside, whose independent coordinates turn it about fewer than three axes,
-    /// meets these in the platform's own axes.
+    /// Whether forces on a platform with parasitic motion are projected in the platform's axes. It pays if the
+    /// independent coordinates turn the platform about fewer than three axes.
     pub own_axes: bool,
-    /// Whether accelerations of what chains on the ground end on are taken less gravity, as those of bodies are.
-    pub weighted: bool,
-    /// Whether legs that end in a point lend masses there to what they end on, which leaves their last bodies fewer
-    /// forces.
-    pub lends: bool,
-    /// Whether what the joints of legs on a platform that moves aside are per independent coordinate is told of the
-    /// velocities of the legs' ends, which all joints of a leg share, rather than by way of the platform's six components.
+    /// Whether gravity is an acceleration of the ground in the closures of chains, as it is for bodies.
+    pub gravity_as_acceleration: bool,
+    /// Whether a leg that ends in a point lumps a mass of its last body there, which leaves that body fewer forces.
+    pub lump_end_masses: bool,
+    /// Whether the joint rates of legs on a platform with parasitic motion are derived from the velocity of the leg's
+    /// end, which all joints share, rather than from the six components of the platform's velocity.
     pub by_ends: bool,
-    /// Whether rates of legs are taken from the independent rates by the rows of the reduced Jacobians, rather than
-    /// from the velocities of what the legs end on.
+    /// Whether leg rates are the rows of the reduced Jacobian times the independent rates, rather than products with
+    /// the velocity of the leg's end.
     pub by_rows: bool,
-    /// Whether the masses of last bodies whose frames stand at the ends of legs are masses at points of what the legs
-    /// end on, in the identification model.
+    /// Whether, in the identification model, the mass of a last body whose frame is at the leg's end is a mass point of
+    /// the body at which the leg ends.
     pub masses_at_ends: bool,
-    /// Whether sums that are known over a divisor are looked for, beside the directions of links in the axes in which
-    /// closures are seen.
+    /// Whether sums are searched that are known over a divisor, such as directions of links in the observer's axes.
     pub over_divisors: bool,
 }
 

@@ -6,7 +6,7 @@
 //! | `passes` | that graph | the same values in fewer operations; the list of passes stands there |
 //! | `divisors` | that graph | the same with a guard on all that is divided by |
 //! | `schedule` | that graph | the [`Program`], operands first |
-//! | `order` | a program whose results are written one by one | the same, in an order in which few values wait |
+//! | `min_live_order` | a program whose results are written one by one | the same program, ordered for few live values |
 //!
 //! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
 //! program is checked once at the end (`Program::verify`), and of the graph after every pass in builds
@@ -21,18 +21,18 @@ mod dag;
 mod divisors;
 mod lanes;
 mod limits;
-mod order;
+mod min_live_order;
 mod passes;
 mod program;
 mod schedule;
 #[cfg(test)]
 mod tests;
 
-pub use dag::rays::States;
+pub use dag::test_states::States;
 pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, OfLegs, Pays, Sums};
 pub(crate) use lanes::{fold, scatter};
 pub use limits::SearchLimits;
-pub(crate) use order::few_waiting;
+pub(crate) use min_live_order::schedule_min_live;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 
 use crate::cas::{Arena, Expr};

@@ -22,18 +22,16 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     check_actuators(description, &mechanism, &mut errors);
     check_sizes(description, &mut errors);
     let mut rough = rough_home(description);
-    match mechanism.is_parasitic() {
-        // A rough pose may be none that the legs allow: it is brought onto them.
-        true if errors.is_empty() => {
-            // With the joints near, a pose that they allow stays as it is.
-            let near = approach(&mechanism, &rough);
-            let found = closed(&mechanism, &near).or_else(|| closed(&mechanism, &rough));
-            if let Some(found) = found {
-                rough = found.home;
-            }
+    if !mechanism.is_parasitic() {
+        check_structure(description, &mechanism, &rough, &mut errors);
+    } else if errors.is_empty() {
+        // The legs may not allow a rough pose, which is then moved onto their closures. With joints near those, an
+        // allowed pose stays as it is.
+        let near = approach(&mechanism, &rough);
+        let found = closed(&mechanism, &near).or_else(|| closed(&mechanism, &rough));
+        if let Some(found) = found {
+            rough = found.home;
         }
-        true => {}
-        false => check_structure(description, &mechanism, &rough, &mut errors),
     }
     errors.into_result(())?;
     match Home::refine(&mechanism, &rough) {
@@ -85,9 +83,10 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
 /// be symmetric about.
 fn base_columns(description: &Description) -> BaseColumns {
     let has_loop = |leg: &crate::description::Leg| leg.end.is_some();
-    let by_kind = match description.legs.iter().any(has_loop) {
-        true => BaseColumns::Symmetric,
-        false => BaseColumns::Cheapest,
+    let by_kind = if description.legs.iter().any(has_loop) {
+        BaseColumns::Symmetric
+    } else {
+        BaseColumns::Cheapest
     };
     description.base_columns.unwrap_or(by_kind)
 }
@@ -208,9 +207,10 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
     let Some(mobility) = loose(mechanism) else {
         return Ok(());
     };
-    match beside.into_iter().all(|at| loose(&at).is_some()) {
-        true => Err(Diagnostics::from(explain::not_held(description, &mobility))),
-        false => Ok(()),
+    if beside.into_iter().all(|at| loose(&at).is_some()) {
+        Err(Diagnostics::from(explain::not_held(description, &mobility)))
+    } else {
+        Ok(())
     }
 }
 
@@ -285,7 +285,7 @@ fn check_structure(
     }
 }
 
-/// The independent coordinates of a platform that moves aside are as many as the legs leave, and determine the
+/// The independent coordinates of a platform with parasitic motion are as many as the legs leave, and determine the
 /// others at home.
 fn check_independent(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
     match rated(mechanism) {

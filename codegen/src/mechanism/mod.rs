@@ -147,11 +147,11 @@ pub struct Mechanism {
     pub kept_actuators: Vec<usize>,
     /// Which columns stand for the base parameters.
     pub base_columns: BaseColumns,
-    /// Coordinates of the pose of a platform that moves aside which its closures keep at zero.
+    /// Coordinates of the pose of a platform with parasitic motion which its closures keep at zero.
     pub still: Vec<usize>,
 }
 
-/// An independent joint of the robot.
+/// A joint of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JointIndex {
     /// The leg.

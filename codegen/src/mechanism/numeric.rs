@@ -284,7 +284,7 @@ impl Mechanism {
 
     /// The rows of the six-vector (velocity, angular velocity) of a leg's end that are independent at
     /// home and determine the leg's joint rates, in ascending order: of legs that block directions of a
-    /// platform that moves aside the best conditioned ones, of others the first.
+    /// platform with parasitic motion the best conditioned ones, of others the first.
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];

@@ -13,7 +13,7 @@ use super::singular_values::SingularValues;
 use super::{Mechanism, Motion};
 use nalgebra::{DMatrix, DVector, Quaternion, UnitQuaternion, Vector3};
 
-/// What is left to a platform that moves aside. Directions are three along and three about the axes.
+/// What is left to a platform with parasitic motion. Directions are three along and three about the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Parasitic {
     /// The L directions that determine the others, best conditioned at home.
@@ -151,7 +151,7 @@ impl Mechanism {
         platform.is_some_and(|own| matches!(own.motion, Motion::Parasitic { .. }))
     }
 
-    /// Of a platform that moves aside, which of x, y, z, rx, ry, rz are independent.
+    /// Of a platform with parasitic motion, which of x, y, z, rx, ry, rz are independent.
     #[must_use]
     pub fn independent_coordinates(&self) -> Option<Vec<usize>> {
         match self.platform.as_ref()?.motion {
@@ -162,7 +162,7 @@ impl Mechanism {
         }
     }
 
-    /// D of t = D v at a pose and joints that close the legs of a platform that moves aside, 6 x r; `None`
+    /// D of t = D v at a pose and joints that close the legs of a platform with parasitic motion, 6 x r; `None`
     /// where the legs leave another number of motions than there are independent coordinates, or these do
     /// not determine the others.
     #[must_use]

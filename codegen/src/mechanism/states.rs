@@ -103,7 +103,7 @@ fn displaced(
         return Some((joints.clone(), joints));
     }
     if mechanism.is_parasitic() {
-        return displaced_aside(mechanism, direction, spread, is_lenient);
+        return displaced_parasitic(mechanism, direction, spread, is_lenient);
     }
     let pose = match &mechanism.platform {
         Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
@@ -113,9 +113,9 @@ fn displaced(
     Some((pose, joints))
 }
 
-/// A state of a platform that moves aside: a pose at a length from home, and the nearest one that the legs
+/// A state of a platform with parasitic motion: a pose at a length from home, and the nearest one that the legs
 /// allow, followed in small steps so that the working mode stays.
-fn displaced_aside(
+fn displaced_parasitic(
     mechanism: &Mechanism,
     direction: &[f64],
     spread: f64,
@@ -131,9 +131,10 @@ fn displaced_aside(
         let legs = mechanism.legs.iter().enumerate();
         let mut is_regular = legs.map(|(index, leg)| {
             let range = mechanism.leg_range(index);
-            let limit = match is_lenient {
-                true => lenient_limit(leg, &mechanism.home.joints[range.clone()]),
-                false => REGULAR,
+            let limit = if is_lenient {
+                lenient_limit(leg, &mechanism.home.joints[range.clone()])
+            } else {
+                REGULAR
             };
             condition(&leg.closure_jacobian(&at.joints[range])) < limit
         });
@@ -192,9 +193,12 @@ fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f
     const STEPS: usize = 8;
     let home = &mechanism.home;
     let legs = mechanism.legs.iter().enumerate();
-    let limits = legs.map(|(index, leg)| match is_lenient {
-        true => lenient_limit(leg, &home.joints[mechanism.leg_range(index)]),
-        false => REGULAR,
+    let limits = legs.map(|(index, leg)| {
+        if is_lenient {
+            lenient_limit(leg, &home.joints[mechanism.leg_range(index)])
+        } else {
+            REGULAR
+        }
     });
     let limits: Vec<f64> = limits.collect();
     let mut joints = home.joints.clone();

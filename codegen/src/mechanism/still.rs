@@ -1,4 +1,4 @@
-//! Coordinates that the closures of a platform that moves aside keep at zero.
+//! Coordinates that the closures of a platform with parasitic motion keep at zero.
 
 use super::Mechanism;
 use super::states::random_states;
@@ -10,7 +10,7 @@ const BESIDE: f64 = 1e-4;
 /// Largest coordinate, m or of a quaternion, that is zero but for rounding and for what closures miss.
 const ROUNDED: f64 = 1e-9;
 
-/// The coordinates of the pose that the closures of a platform that moves aside keep at zero: that of the turn
+/// The coordinates of the pose that the closures of a platform with parasitic motion keep at zero: that of the turn
 /// about z of a 3-RPS, for instance. They are zero at random states that differ from home, which a coordinate
 /// that depends on the pose is nowhere near home but at home itself.
 pub(super) fn still_coordinates(mechanism: &Mechanism) -> Vec<usize> {

@@ -41,9 +41,10 @@ pub(super) fn joints(
     mechanism: &Mechanism,
     selection: &Selection,
 ) -> Result<JointsBy, Underivable> {
-    let from = match mechanism.is_tree() {
-        false => MotionInput::Pose,
-        true => MotionInput::Joints,
+    let from = if mechanism.is_tree() {
+        MotionInput::Joints
+    } else {
+        MotionInput::Pose
     };
     match derive(&Arena::new(), mechanism, selection, Function::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),

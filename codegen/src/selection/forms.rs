@@ -20,6 +20,15 @@ pub(crate) struct Forms<'m> {
     counts: Counts<'m>,
 }
 
+/// A form that the last changes have improved.
+struct Refinement {
+    form: Form,
+    /// Operations of the original form after a short search.
+    operations_before: usize,
+    /// Operations after a short search.
+    operations: usize,
+}
+
 impl<'m> Forms<'m> {
     /// Of a function.
     pub(crate) fn new(assembler: Assembler<'m>, function: Function, from: MotionInput) -> Self {
@@ -47,15 +56,15 @@ impl Forms<'_> {
         let worth = |form: &&Form| form.is_worth || form.operations <= most;
         let mut searched: Vec<Form> = Vec::new();
         for form in forms.iter().filter(worth) {
-            let Some((refined, [first, least])) = self.refined(form)? else {
+            let Some(refinement) = self.refined(form)? else {
                 searched.push(form.clone());
                 continue;
             };
-            if least * 100 > first * CLEARLY {
+            if refinement.operations * 100 > refinement.operations_before * CLEARLY {
                 searched.push(form.clone());
             }
-            searched.extend(self.in_other_axes((&refined, least))?);
-            searched.push(refined);
+            searched.extend(self.in_other_axes(&refinement)?);
+            searched.push(refinement.form);
         }
         let searched = distinct(searched);
         let mut best: Option<Program> = None;
@@ -196,9 +205,8 @@ impl Forms<'_> {
         Ok((after(&other)? < after(best)?).then_some(other))
     }
 
-    /// What the changes that are tried last make of a form, each where a short search says that it pays, with the
-    /// operations after such searches: of the form, and of what is made of it. `None` if nothing pays.
-    fn refined(&self, form: &Form) -> Result<Option<(Form, [usize; 2])>, Underivable> {
+    /// Applies to a form those of the last changes that save operations after a short search. `None` if none does.
+    fn refined(&self, form: &Form) -> Result<Option<Refinement>, Underivable> {
         let changes = formulation::last_choices(self.mechanism, self.function);
         if changes.is_empty() || !self.is_thorough {
             return Ok(None);
@@ -215,27 +223,32 @@ impl Forms<'_> {
                 (selection, least) = (other, after);
             }
         }
-        let refined = Form {
-            selection,
-            ..form.clone()
+        let refinement = Refinement {
+            form: Form {
+                selection,
+                ..form.clone()
+            },
+            operations_before: first,
+            operations: least,
         };
-        Ok((least < first).then_some((refined, [first, least])))
+        Ok((least < first).then_some(refinement))
     }
 
-    /// The best form in other axes of one that the last changes have made, if a short search makes it better: which
-    /// axes suit it may be another matter than before.
-    fn in_other_axes(&self, (form, least): (&Form, usize)) -> Result<Option<Form>, Underivable> {
+    /// The best form in other axes of a refined form, if it needs fewer operations after a short search: the refinement
+    /// may have changed which axes suit best.
+    fn in_other_axes(&self, refinement: &Refinement) -> Result<Option<Form>, Underivable> {
         if self.function.columns().is_none() {
             return Ok(None);
         }
         let changes = formulation::choices_of_function(self.mechanism, self.function);
-        let start = self.form(form.selection.clone())?;
+        let start = self.form(refinement.form.selection.clone())?;
         let (best, trials) = self.changed(&start, &changes)?;
         let operations = |form: &Form| form.operations;
         let mut found: Option<(usize, Form)> = None;
         for form in formulation::promising(trials, best.operations, operations) {
             let after = self.counts.after(&form.selection)?;
-            if after < found.as_ref().map_or(least, |(after, _)| *after) {
+            let least = found.as_ref().map(|(operations, _)| *operations);
+            if after < least.unwrap_or(refinement.operations) {
                 found = Some((after, form));
             }
         }
@@ -280,7 +293,7 @@ impl Forms<'_> {
         Ok(worth.collect())
     }
 
-    /// The selection beside the own one in which a function is written otherwise.
+    /// Another selection in which the function has a different form.
     fn other_form(&self) -> Option<Selection> {
         let function = self.function;
         if function.columns() == Some(Columns::Standard) && !self.selection.combined.is_empty() {

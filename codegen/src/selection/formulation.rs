@@ -3,7 +3,8 @@
 
 use super::regressor::Regressor;
 use crate::derivation::{
-    Formulation, Selection, Underivable, is_whole, seat_choices, station_choices,
+    Formulation, Selection, Underivable, closure_frame_choices, may_use_any_axes,
+    observer_frame_choices,
 };
 use crate::mechanism::{End, Leg, Mechanism};
 use crate::parallel;
@@ -27,13 +28,13 @@ pub(super) fn cheapest_formulation(
     selection: &Selection,
 ) -> Result<(Formulation, Regressor), Underivable> {
     let plain = Formulation {
-        stations: vec![0; mechanism.legs.len()],
-        seats: vec![0; mechanism.legs.len()],
+        closure_frames: vec![0; mechanism.legs.len()],
+        observer_frames: vec![0; mechanism.legs.len()],
         meeting: false,
         at_end: false,
         own_axes: false,
-        weighted: false,
-        lends: false,
+        gravity_as_acceleration: false,
+        lump_end_masses: false,
         by_ends: false,
         by_rows: false,
         masses_at_ends: false,
@@ -96,32 +97,44 @@ impl Best<'_> {
     }
 }
 
-/// What of a formulation may be written otherwise.
+/// A change of a formulation.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
     /// The first axes for all legs.
     Plain,
-    /// The axes of the closure of legs of one shape.
-    Station(Vec<usize>, usize),
-    /// The axes in which their closures see what they end on.
-    Seat(Vec<usize>, usize, usize),
-    /// Whether axes that meet share a moment.
+    /// The axes in which the closures of some legs of one shape are written.
+    ClosureFrame {
+        /// The legs.
+        legs: Vec<usize>,
+        /// The number of the axes.
+        closure_frame: usize,
+    },
+    /// The axes in which the closures of some chains see the bodies at their ends, with those in which they are written.
+    ObserverFrame {
+        /// The chains.
+        legs: Vec<usize>,
+        /// The number of the observer's axes.
+        observer_frame: usize,
+        /// The number of the axes in which the closures are written.
+        closure_frame: usize,
+    },
+    /// See [`Formulation::meeting`].
     Meeting(bool),
-    /// Whether forces of chains go to the skeleton at their ends.
+    /// See [`Formulation::at_end`].
     AtEnd(bool),
-    /// Whether forces on a platform that moves aside meet its coordinates in its own axes.
+    /// See [`Formulation::own_axes`].
     OwnAxes(bool),
-    /// Whether accelerations of the ends of chains are taken less gravity.
-    Weighted(bool),
-    /// Whether legs lend masses at their ends to what they end on.
-    Lends(bool),
-    /// Whether rows of legs on a platform that moves aside share the velocities of the legs' ends.
+    /// See [`Formulation::gravity_as_acceleration`].
+    GravityAsAcceleration(bool),
+    /// See [`Formulation::lump_end_masses`].
+    LumpEndMasses(bool),
+    /// See [`Formulation::by_ends`].
     ByEnds(bool),
-    /// Whether rates of legs are taken by the rows of their reduced Jacobians.
+    /// See [`Formulation::by_rows`].
     ByRows(bool),
-    /// Whether masses at the ends of legs are masses at points of what the legs end on.
+    /// See [`Formulation::masses_at_ends`].
     MassesAtEnds(bool),
-    /// Whether sums that are known over a divisor are looked for.
+    /// See [`Formulation::over_divisors`].
     OverDivisors(bool),
 }
 
@@ -133,7 +146,14 @@ impl Change {
 
     /// Whether it takes the first axes for some legs.
     pub(super) const fn takes_first(&self) -> bool {
-        matches!(self, Self::Plain | Self::Station(_, 0))
+        matches!(
+            self,
+            Self::Plain
+                | Self::ClosureFrame {
+                    closure_frame: 0,
+                    ..
+                }
+        )
     }
 
     /// A selection with the change; `None` where it is written so already.
@@ -149,24 +169,35 @@ impl Change {
         let mut changed = formulation.clone();
         match self {
             Self::Plain => {
-                changed.stations.fill(0);
-                changed.seats.fill(0);
+                changed.closure_frames.fill(0);
+                changed.observer_frames.fill(0);
             }
-            Self::Station(legs, station) => {
+            Self::ClosureFrame {
+                legs,
+                closure_frame,
+            } => {
                 for &leg in legs {
-                    (changed.seats[leg], changed.stations[leg]) = (0, *station);
+                    changed.observer_frames[leg] = 0;
+                    changed.closure_frames[leg] = *closure_frame;
                 }
             }
-            Self::Seat(legs, seat, station) => {
+            Self::ObserverFrame {
+                legs,
+                observer_frame,
+                closure_frame,
+            } => {
                 for &leg in legs {
-                    (changed.seats[leg], changed.stations[leg]) = (*seat, *station);
+                    changed.observer_frames[leg] = *observer_frame;
+                    changed.closure_frames[leg] = *closure_frame;
                 }
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
             Self::AtEnd(at_end) => changed.at_end = *at_end,
             Self::OwnAxes(own_axes) => changed.own_axes = *own_axes,
-            Self::Weighted(weighted) => changed.weighted = *weighted,
-            Self::Lends(lends) => changed.lends = *lends,
+            Self::GravityAsAcceleration(gravity_as_acceleration) => {
+                changed.gravity_as_acceleration = *gravity_as_acceleration
+            }
+            Self::LumpEndMasses(lump_end_masses) => changed.lump_end_masses = *lump_end_masses,
             Self::ByEnds(by_ends) => changed.by_ends = *by_ends,
             Self::ByRows(by_rows) => changed.by_rows = *by_rows,
             Self::MassesAtEnds(at_ends) => changed.masses_at_ends = *at_ends,
@@ -176,10 +207,10 @@ impl Change {
     }
 }
 
-/// The changes among which one is chosen after the other: for each shape of legs the axes of its closure, then
-/// whether axes that meet share a moment. Of legs that are closed in some components alone they are tried for one
-/// function, `own`, and not for the robot, for what suits its identification model does not suit the rest.
-fn choices(mechanism: &Mechanism, own: bool) -> Vec<Vec<Change>> {
+/// Groups of changes, of each of which one is chosen, in this order: for each shape of legs the axes of its closure, then
+/// whether axes that meet share a moment. If `for_function`, legs whose closure uses some components only have these
+/// choices, too: axes that suit the identification model do not suit other functions of such legs.
+fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
     let mut shapes = BTreeSet::new();
     if !mechanism.is_tree() {
         let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
@@ -188,23 +219,34 @@ fn choices(mechanism: &Mechanism, own: bool) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        // A number counts if it stands for axes of its own in one of the legs.
+        // A number counts if it means different axes in one of the legs.
         let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
             let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
-            let are_tried = own || legs.iter().all(|&leg| is_whole(mechanism, leg));
+            let are_tried =
+                for_function || legs.iter().all(|&leg| may_use_any_axes(mechanism, leg));
             all.filter(|&number| are_tried || number == 0)
                 .collect::<BTreeSet<usize>>()
         };
-        let stations = of_all(station_choices);
-        let unseated = stations
+        let closure_frames = of_all(closure_frame_choices);
+        let observer_frames = of_all(observer_frame_choices);
+        let in_own_axes = closure_frames
             .iter()
-            .map(|&station| Change::Station(legs.clone(), station));
-        let seated = of_all(seat_choices).into_iter().skip(1).flat_map(|seat| {
-            let legs = &legs;
-            let stations = stations.iter();
-            stations.map(move |&station| Change::Seat(legs.clone(), seat, station))
+            .map(|&closure_frame| Change::ClosureFrame {
+                legs: legs.clone(),
+                closure_frame,
+            });
+        let in_observer_axes = observer_frames.iter().skip(1).flat_map(|&observer_frame| {
+            closure_frames
+                .iter()
+                .map(move |&closure_frame| (observer_frame, closure_frame))
         });
-        unseated.chain(seated).collect()
+        let in_observer_axes =
+            in_observer_axes.map(|(observer_frame, closure_frame)| Change::ObserverFrame {
+                legs: legs.clone(),
+                observer_frame,
+                closure_frame,
+            });
+        in_own_axes.chain(in_observer_axes).collect()
     };
     let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
     if mechanism.is_parasitic() {
@@ -212,27 +254,36 @@ fn choices(mechanism: &Mechanism, own: bool) -> Vec<Vec<Change>> {
     }
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
     if mechanism.skeleton().is_some() {
-        choices.push(vec![Change::Weighted(false), Change::Weighted(true)]);
+        choices.push(vec![
+            Change::GravityAsAcceleration(false),
+            Change::GravityAsAcceleration(true),
+        ]);
     }
     choices
 }
 
-/// The changes among which one is chosen after the other for a function on its own. What legs of a platform that moves
-/// aside block is told in their axes, as an error and as its derivative, and which leg is out of reach is told where
-/// its joints are needed: there only functions of all joints choose the axes of such legs.
+/// The changes that are tried for one function, one after the other. Constraints of a platform with parasitic motion are
+/// written in the axes of the legs, and guards of unreachable poses belong to the legs whose joints are needed: there
+/// only functions of all joints choose the axes of the legs.
 pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
     let has_forces = has_forces(function);
-    let own = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
+    let may_change_axes = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
     let has_motion = has_forces || function.columns().is_some();
     let mut all = vec![Change::Plain];
-    all.extend(choices(mechanism, own).into_iter().flatten());
-    all.retain(|change| has_motion || !matches!(change, Change::Weighted(_) | Change::OwnAxes(_)));
+    all.extend(choices(mechanism, may_change_axes).into_iter().flatten());
+    all.retain(|change| {
+        has_motion
+            || !matches!(
+                change,
+                Change::GravityAsAcceleration(_) | Change::OwnAxes(_)
+            )
+    });
     if has_forces && mechanism.skeleton().is_some() {
         all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
     }
     let ends_in_point = |leg: &Leg| matches!(leg.end, Some(End::Point { .. }));
     if has_forces && mechanism.legs.iter().any(ends_in_point) {
-        all.push(Change::Lends(true));
+        all.push(Change::LumpEndMasses(true));
     }
     all
 }

@@ -74,7 +74,7 @@ impl Search {
         self.lower_with(arena, mechanism, function, derived, &|_| None)
     }
 
-    /// The program of a derived function with inputs that stand for constants, of these values.
+    /// The program of a derived function in which inputs replace constants, of these values.
     pub(super) fn lower_with<'a>(
         &self,
         arena: &'a Arena,
@@ -96,7 +96,7 @@ impl Search {
         };
         let function = Expressions {
             inputs: inputs(derived),
-            output: output(function, derived.shape),
+            output: output(function, derived),
             entries: &derived.entries,
             guards: guards(&derived.guards),
             divisors: guards(&derived.divisors),
@@ -114,9 +114,10 @@ impl Search {
             return Ok(program);
         };
         let other = lower(arena, &function, &again, &states)?;
-        Ok(match is_cheaper(&other, &program) {
-            true => other,
-            false => program,
+        Ok(if is_cheaper(&other, &program) {
+            other
+        } else {
+            program
         })
     }
 
@@ -159,7 +160,8 @@ fn inputs(derived: &Derived<'_>) -> Vec<Array> {
     derived.inputs.iter().map(array).collect()
 }
 
-fn output(function: Function, (rows, columns): (usize, usize)) -> Array {
+fn output(function: Function, derived: &Derived<'_>) -> Array {
+    let (rows, columns) = derived.shape;
     Array {
         name: function.name().to_owned(),
         shape: if function.is_vector() {

@@ -9,7 +9,7 @@ use super::labels::Labels;
 use super::names::Names;
 use super::places::{Place, Places};
 use super::statement::{Call, Expression, Operator, Pair, Statement};
-use crate::lowering::{Entry, Operand, Operation, Program, few_waiting};
+use crate::lowering::{Entry, Operand, Operation, Program, schedule_min_live};
 use std::collections::{BTreeMap, HashSet};
 
 /// Operations that one expression may hold.
@@ -53,7 +53,7 @@ impl Body {
     /// wait for their last use.
     #[must_use]
     pub fn placed(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
-        let program = few_waiting(program);
+        let program = schedule_min_live(program);
         let mut writer = Writer::new(&program, labels, reserved, &|_| false);
         writer.places = Some(Places::new(&program));
         writer.known_places();

@@ -2,11 +2,11 @@
 
 use crate::lowering::Cost;
 use crate::model::RobotModel;
-use crate::whole::{SideBySide, WholeCost};
+use crate::total_cost::{SideBySide, TotalCost};
 
 /// The lines of a function.
 #[must_use]
-pub fn of_function(cost: &WholeCost) -> Vec<String> {
+pub fn of_function(cost: &TotalCost) -> Vec<String> {
     let mut lines = vec![format!(" {}.", cost.once)];
     if let Some(SideBySide {
         once,
@@ -71,7 +71,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
 }
 
 /// `; in lanes of vectors 237 + 6 x 419`, of legs side by side.
-fn lanes(cost: &WholeCost) -> String {
+fn lanes(cost: &TotalCost) -> String {
     let told = cost.side_by_side.map(|side| {
         let (once, each, legs) = (side.once, side.each, side.legs);
         let lanes = match side.lanes {

@@ -2,13 +2,13 @@
 //!
 //! The twist is the velocity of the platform's origin and its angular velocity, both in the base
 //! frame. Every independent coordinate v moves the platform along one constant direction of that
-//! six-vector, so D has one unit column per coordinate and is constant, but for a platform that moves aside
+//! six-vector, so D has one unit column per coordinate and is constant, but for a platform with parasitic motion
 //! (`parasitic`): its legs' closures put entries beside the units that change with the pose. Orientations in space are unit
 //! quaternions (w, x, y, z), which have no representation singularity; their v is the angular velocity.
 
 use super::model::Motion;
 
-/// One independent coordinate of the twist: a unit column of D; of a platform that moves aside the column's
+/// One independent coordinate of the twist: a unit column of D; of a platform with parasitic motion the column's
 /// unit entry, beside which the legs' closures put others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TwistCoordinate {

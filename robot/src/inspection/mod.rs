@@ -8,7 +8,7 @@ pub use conditioning::{Conditioning, Partition};
 use crate::{compiled_file::CompiledFile, interpreted::InterpretedRobot};
 use overact::Columns;
 use overact_codegen::{
-    BaseParameter, RobotModel, WholeCost, derivation::MotionInput, lowering::Array,
+    BaseParameter, RobotModel, TotalCost, derivation::MotionInput, lowering::Array,
 };
 use serde::Serialize;
 
@@ -112,7 +112,7 @@ pub struct Function {
     pub operations: usize,
     /// Operations by kind, with those of what is called.
     #[serde(flatten)]
-    pub cost: WholeCost,
+    pub cost: TotalCost,
 }
 
 /// An array that goes in or comes out.

@@ -88,11 +88,11 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFun
     }
     // The model has the wanted functions only; all that there are may be meant.
     let all = inventory(&model.mechanism, model.selection.joints);
-    let mut names: Vec<&str> = all.iter().map(|(function, _)| function.name()).collect();
+    let mut names: Vec<&str> = all.iter().map(|form| form.function.name()).collect();
     names.dedup();
     let full = all
         .iter()
-        .map(|&(function, from)| function_name(function, from, model.is_tree()));
+        .map(|form| function_name(form.function, form.from, model.is_tree()));
     let full: Vec<String> = full.collect();
     let known = names.iter().copied().chain(full.iter().map(String::as_str));
     let help = did_you_mean(name, known);

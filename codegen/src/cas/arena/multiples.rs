@@ -94,6 +94,7 @@ fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::CosineSine;
     use crate::cas::Direction;
     use overact_exact::Angle;
 
@@ -107,8 +108,9 @@ mod tests {
                 arena.find_irrational_multiples();
             }
             let q = arena.input("joints", 0);
-            let (c, s) = arena.cosine_and_sine(&arena.input_angle("joints", 1));
-            let (_, root) = arena.cosine_and_sine(&sixty);
+            let CosineSine { cosine: c, sine: s } =
+                arena.cosine_and_sine(&arena.input_angle("joints", 1));
+            let root = arena.cosine_and_sine(&sixty).sine;
             let determinant = c * (root * (c * q)) + s * (root * (s * q));
             let (factor, base) = determinant.factor_and_base();
             (factor.value(), base == q)

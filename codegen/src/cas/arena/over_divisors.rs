@@ -65,6 +65,7 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::CosineSine;
 
     /// With t₁' = t₁ c + t₂ s and t₂' = t₂ c - t₁ s, k (t₂' c/s + t₁') is k t₂ / s where t₂ is known.
     #[test]
@@ -74,7 +75,8 @@ mod tests {
             if finds {
                 arena.find_over_divisors();
             }
-            let (c, s) = arena.cosine_and_sine(&arena.input_angle("joints", 0));
+            let CosineSine { cosine: c, sine: s } =
+                arena.cosine_and_sine(&arena.input_angle("joints", 0));
             let [t1, t2, d] = [0, 1, 2].map(|i| arena.input("pose", i));
             let [own1, own2] = [t1 * c + t2 * s, t2 * c - t1 * s];
             let k = arena.integer(5) / d;

@@ -151,18 +151,15 @@ impl Arena {
         let mut factors = terms.iter().flatten();
         let stands = factors.any(|factor| tables.stands.contains_key(&factor.image()));
         drop(tables);
-        match stands {
-            false => {
-                let products = terms.iter().map(|&[a, b, c]| a * b * c);
-                self.number(products.fold(Number::ZERO, |sum, product| sum + product))
-            }
-            true => {
-                let products = terms.iter().map(|term| {
-                    let [a, b, c] = term.map(|factor| self.number(factor));
-                    a * b * c
-                });
-                products.fold(self.zero(), |sum, product| sum + product)
-            }
+        if stands {
+            let products = terms.iter().map(|term| {
+                let [a, b, c] = term.map(|factor| self.number(factor));
+                a * b * c
+            });
+            products.fold(self.zero(), |sum, product| sum + product)
+        } else {
+            let products = terms.iter().map(|&[a, b, c]| a * b * c);
+            self.number(products.fold(Number::ZERO, |sum, product| sum + product))
         }
     }
 
@@ -198,9 +195,10 @@ impl Arena {
         let square = others.fold(number(0), |sum, k| sum + free[k] * free[k]);
         let sum = number(1) + square;
         for (k, symbol) in symbols.into_iter().enumerate() {
-            let part = match k == pole {
-                true => number(1) + -square,
-                false => free[k] + free[k],
+            let part = if k == pole {
+                number(1) + -square
+            } else {
+                free[k] + free[k]
             };
             let own = &mut tables.symbols[symbol.0 as usize];
             own.fingerprint = part.over(sum);
@@ -257,9 +255,12 @@ mod tests {
         for zero in [&[][..], &[6], &[3, 5]] {
             let arena = Arena::new();
             arena.unit_quaternion("pose", 3, zero);
-            let entry = |k: usize| match zero.contains(&k) {
-                true => arena.zero(),
-                false => arena.input("pose", k),
+            let entry = |k: usize| {
+                if zero.contains(&k) {
+                    arena.zero()
+                } else {
+                    arena.input("pose", k)
+                }
             };
             let sum: Expr<'_> = (3..7).map(|k| entry(k) * entry(k)).sum();
             assert!(sum.is_one(), "{zero:?}");

@@ -3,7 +3,7 @@
 //! Forms that are equal may differ in their digits: a sum of large terms that gives a small value has
 //! lost the digits in which its terms agree. That matters most where a leg is nearly stretched and many
 //! values are small; the derivation's own forms do well there, as products of small factors do. So all
-//! nodes are evaluated at some states ([`rays`](super::rays)), exactly and with a random error after each
+//! nodes are evaluated at some states ([`test_states`](super::test_states)), exactly and with a random error after each
 //! operation (Monte Carlo arithmetic: D. S. Parker, 1997), which grows along the graph as rounding errors
 //! do. The error of a node as it would be written, with what it is computed from as that is written by
 //! now, may not be far larger than its error in the derivation's own form.

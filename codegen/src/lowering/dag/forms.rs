@@ -1,6 +1,6 @@
 //! Which sums, products and quotients of two nodes have a node's value.
 
-use super::sieve::Sieve;
+use super::candidate_prefilter::CandidatePrefilter;
 use super::{Dag, Definition, Edge};
 use crate::cas::field::Element;
 use crate::cas::hasher::QuickMap;
@@ -15,7 +15,7 @@ pub(super) struct Forms(Option<Found>);
 #[derive(Debug, Clone)]
 struct Found {
     pairs: QuickMap<usize, Vec<Definition>>,
-    sieve: Sieve,
+    prefilter: CandidatePrefilter,
     inverses: Vec<Element>,
 }
 
@@ -24,7 +24,7 @@ impl Found {
         let inverse = |node| dag.value(Edge::to(node)).inverse();
         Self {
             pairs: QuickMap::default(),
-            sieve: Sieve::new(dag),
+            prefilter: CandidatePrefilter::new(dag),
             inverses: (0..dag.len()).map(inverse).collect(),
         }
     }
@@ -35,7 +35,7 @@ impl Found {
         let mut found = Vec::new();
         for other in (0..dag.len()).filter(|&n| n != node && dag.is_live(n)) {
             for negative in [false, true] {
-                if !self.sieve.may_be_sum(node, other, negative) {
+                if !self.prefilter.may_be_sum(node, other, negative) {
                     continue;
                 }
                 let a = Edge::new(other, negative);
@@ -43,7 +43,7 @@ impl Found {
                 let b = b.filter(|b| b.node() >= other && b.node() != node);
                 found.extend(b.map(|b| Definition::Sum(a, b)));
             }
-            if !self.sieve.may_be_product(node, other) {
+            if !self.prefilter.may_be_product(node, other) {
                 continue;
             }
             let b = dag.find(target * self.inverses[other]);

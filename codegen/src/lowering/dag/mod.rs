@@ -7,14 +7,14 @@
 //! computed may change as long as its fingerprint stays. The arena, in which expressions are built, ends
 //! in [`from_arena`]: nothing after it sees it.
 
+mod candidate_prefilter;
 mod cone;
 pub(crate) mod digits;
 mod dominators;
 mod forms;
 pub(crate) mod from_arena;
 mod node;
-pub(crate) mod rays;
-mod sieve;
+pub(crate) mod test_states;
 mod verify;
 
 pub(crate) use dominators::Dominators;
@@ -430,8 +430,8 @@ impl Dag {
     }
 
     /// States at which the digits of forms are compared.
-    pub(crate) fn measure_digits(&mut self, states: &rays::States<'_>) {
-        self.digits = Digits::new(rays::states(self, states));
+    pub(crate) fn measure_digits(&mut self, states: &test_states::States<'_>) {
+        self.digits = Digits::new(test_states::states(self, states));
     }
 
     /// From here on digits are compared no more.

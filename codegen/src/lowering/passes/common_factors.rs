@@ -120,37 +120,48 @@ fn splits(dag: &Dag, term: Edge) -> Vec<Split> {
 fn collect(dag: &mut Dag, sum: usize) -> Option<i32> {
     let terms = terms(dag, sum);
     let all: Vec<Vec<Split>> = terms.iter().map(|&term| splits(dag, term)).collect();
-    let mut best: Option<(i32, [usize; 2], [Split; 2])> = None;
+    let mut best: Option<(i32, CommonFactor)> = None;
     for second in 0..terms.len() {
         for first in 0..second {
             for &a in &all[first] {
                 for &b in all[second].iter().filter(|b| b.factor == a.factor) {
-                    let saving = tried(dag, sum, &terms, ([first, second], [a, b]), false);
-                    if saving > best.map_or(0, |(saving, ..)| saving) {
-                        best = Some((saving, [first, second], [a, b]));
+                    let candidate = CommonFactor {
+                        places: [first, second],
+                        factor: a.factor,
+                        rests: [a.rest, b.rest],
+                    };
+                    let saving = tried(dag, sum, &terms, &candidate, false);
+                    if saving > best.map_or(0, |(saving, _)| saving) {
+                        best = Some((saving, candidate));
                     }
                 }
             }
         }
     }
-    let (_, places, pair) = best?;
-    let saving = tried(dag, sum, &terms, (places, pair), true);
+    let (_, candidate) = best?;
+    let saving = tried(dag, sum, &terms, &candidate, true);
     (saving > 0).then_some(saving)
 }
 
-/// What it saves to take a factor out of two terms of a sum; done if it `stays`.
-fn tried(
-    dag: &mut Dag,
-    sum: usize,
-    terms: &[Edge],
-    (places, [a, b]): ([usize; 2], [Split; 2]),
-    stays: bool,
-) -> i32 {
+/// A factor that two terms of a sum share.
+#[derive(Clone, Copy)]
+struct CommonFactor {
+    /// The two terms, by their place in the sum.
+    places: [usize; 2],
+    /// The factor's node.
+    factor: usize,
+    /// The terms without the factor.
+    rests: [Edge; 2],
+}
+
+/// The operations that are saved by taking a factor out of two terms of a sum; done if it `stays`.
+fn tried(dag: &mut Dag, sum: usize, terms: &[Edge], common: &CommonFactor, stays: bool) -> i32 {
     let known = dag.len();
     let scope = dag.scope(sum);
-    let inner = node_of(dag, Definition::Sum(a.rest, b.rest), scope);
-    let product = Definition::Product(Edge::to(a.factor), inner);
-    let others = (0..terms.len()).filter(|at| !places.contains(at));
+    let [first, second] = common.rests;
+    let inner = node_of(dag, Definition::Sum(first, second), scope);
+    let product = Definition::Product(Edge::to(common.factor), inner);
+    let others = (0..terms.len()).filter(|at| !common.places.contains(at));
     let others: Vec<Edge> = others.map(|at| terms[at]).collect();
     let by = match others.split_first() {
         None => product,

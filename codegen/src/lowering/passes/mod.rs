@@ -18,16 +18,16 @@
 //! the form that it replaces does not.
 
 mod angles;
-mod come_home;
 mod common_factors;
 mod conditions;
 mod guards;
-mod own_pairs;
 mod reciprocals;
 mod repair;
 mod replacements;
 mod requests;
+mod restore_original_form;
 mod selections;
+mod self_cancelling_pairs;
 mod shared_pairs;
 mod signs;
 mod single_replacements;
@@ -55,7 +55,7 @@ pub(crate) const PASSES: [Pass; 13] = [
     pass("conditions", conditions::run),
     pass("walk", walk::run),
     pass("common factors", common_factors::run),
-    pass("come home", come_home::run),
+    pass("restore original form", restore_original_form::run),
     pass("repair", repair::run),
     pass("conditions", conditions::run),
     pass("guards", guards::run),

@@ -6,8 +6,8 @@
 //! have little to do with another leg's; a small function is searched as a whole, and a heading with many
 //! nodes in pieces, each a run of its own nodes in the order in which the derivation has made them.
 
-use super::own_pairs::{Kind, OwnPairs};
 use super::requests::{Form, Request, requests};
+use super::self_cancelling_pairs::{Kind, SelfCancellingPairs};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
 use crate::cas::filter::Filter;
@@ -43,14 +43,23 @@ pub(super) fn improve(dag: &mut Dag, limits: &SearchLimits) -> i32 {
     saved
 }
 
-/// Nodes that are searched together: a heading's own, or a piece of them, and with those they are made of.
-type Group = (Vec<usize>, Vec<usize>);
+/// Nodes that are searched together.
+#[derive(Clone)]
+struct Group {
+    /// Nodes of one scope, or a part of them: those that are improved.
+    own: Vec<usize>,
+    /// These nodes and their operands, of which pairs are tried.
+    all: Vec<usize>,
+}
 
 /// The groups that are searched, one after the other.
 fn groups(dag: &mut Dag, limits: &SearchLimits) -> Vec<Group> {
     let live: Vec<usize> = (0..dag.len()).filter(|&n| dag.is_live(n)).collect();
     if live.len() <= limits.whole_nodes {
-        return vec![(live.clone(), live)];
+        return vec![Group {
+            own: live.clone(),
+            all: live,
+        }];
     }
     let most = limits.piece(dag.len());
     let mut scopes: Vec<u32> = live.iter().map(|&n| dag.scope(n)).collect();
@@ -78,24 +87,31 @@ fn pieces(dag: &Dag, own: &[usize], most: usize) -> Vec<Group> {
         let more = with.iter().filter(|n| !all.contains(*n)).count();
         if !run.is_empty() && all.len() + more > most {
             let full = std::mem::take(&mut all);
-            pieces.push((std::mem::take(&mut run), full.into_iter().collect()));
+            pieces.push(Group {
+                own: std::mem::take(&mut run),
+                all: full.into_iter().collect(),
+            });
         }
         run.push(node);
         all.extend(with);
     }
-    pieces.push((run, all.into_iter().collect()));
+    pieces.push(Group {
+        own: run,
+        all: all.into_iter().collect(),
+    });
     pieces
 }
 
-fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
+fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
+    let Group { own, all } = group;
     let tree = Dominators::new(dag);
     let is_target = |node: &usize| dag.is_open(*node) && tree.cone(*node) > 1;
     let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
     let (requests, heads) = requests(dag, &tree, &targets, all);
     let filter = Filter::new(heads.keys(), heads.len());
-    let own_pairs = OwnPairs::new(all, &requests, heads.values().copied());
+    let self_cancelling_pairs = SelfCancellingPairs::new(all, &requests, heads.values().copied());
     let mut hits = Vec::new();
-    for_each_pair(dag, all, &own_pairs, |definition, value| {
+    for_each_pair(dag, all, &self_cancelling_pairs, |definition, value| {
         let ([key], negative) = canonical([value]);
         if !filter.may_hold(&key) {
             return;
@@ -146,7 +162,7 @@ fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definit
 fn for_each_pair(
     dag: &Dag,
     all: &[usize],
-    own: &OwnPairs,
+    own: &SelfCancellingPairs,
     mut visit: impl FnMut(Definition, Element),
 ) {
     for (place, &first) in all.iter().enumerate().filter(|(_, n)| dag.is_live(**n)) {

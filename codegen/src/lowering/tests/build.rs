@@ -158,8 +158,8 @@ fn expression<'a>(arena: &'a Arena, names: &HashMap<String, Expr<'a>>, text: &Te
             ("sqrt", [a]) => of(a).sqrt(),
             ("sign", [a]) => of(a).sign(),
             ("atan2", [y, x]) => of(y).atan2(of(x)),
-            ("cos", [a]) => arena.cosine_and_sine(&direction(arena, a)).0,
-            ("sin", [a]) => arena.cosine_and_sine(&direction(arena, a)).1,
+            ("cos", [a]) => arena.cosine_and_sine(&direction(arena, a)).cosine,
+            ("sin", [a]) => arena.cosine_and_sine(&direction(arena, a)).sine,
             _ => panic!(
                 "there is no function {name} of {} arguments",
                 arguments.len()

@@ -9,6 +9,6 @@ mod dominators;
 mod lanes;
 mod language;
 mod listing;
-mod order;
+mod min_live_order;
 mod properties;
 mod random;

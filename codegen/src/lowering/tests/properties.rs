@@ -9,10 +9,10 @@ use crate::cas::field::canonical;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::digits::evaluate;
 use crate::lowering::dag::{Angle, Dag, Definition, Edge};
-use crate::lowering::few_waiting;
 use crate::lowering::passes::{PARTS, PASSES};
 use crate::lowering::program::{Operand, Operation, Program};
 use crate::lowering::schedule::schedule;
+use crate::lowering::schedule_min_live;
 use std::collections::BTreeSet;
 
 const FUNCTIONS: u64 = 60;
@@ -202,7 +202,7 @@ fn programs_compute_what_the_expressions_say() {
         };
         let found = results(&program, &input);
         assert_close(&found, &expected, &format!("function {seed}"));
-        let ordered = few_waiting(&program);
+        let ordered = schedule_min_live(&program);
         ordered
             .verify()
             .unwrap_or_else(|broken| panic!("function {seed}, in order: {broken}"));

@@ -51,7 +51,7 @@ pub(in crate::mechanism) fn too_few_actuators(
         .help(help)
 }
 
-/// A platform that moves aside while it moves: what it does, and a way out.
+/// A platform with parasitic motion while it moves: what it does, and a way out.
 fn moves_aside(found: &Parasitic) -> String {
     format!(
         "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}: write {} beside `motion`, or give the legs more passive joints",
@@ -67,7 +67,7 @@ fn key(coordinates: &[usize]) -> String {
     format!("independent = [{}]", names.collect::<Vec<_>>().join(", "))
 }
 
-/// Independent coordinates of a platform that moves aside which are not as many as the legs leave, or do not
+/// Independent coordinates of a platform with parasitic motion which are not as many as the legs leave, or do not
 /// determine the others.
 pub(in crate::mechanism) fn independent(
     description: &Description,
@@ -100,9 +100,10 @@ pub(in crate::mechanism) fn independent(
     };
     let message = "the independent coordinates do not determine the platform's motion at home";
     Diagnostic::new(Code::NOT_HELD, message, span)
-        .label(match found.condition.is_finite() {
-            true => format!("their condition number is {:.1e}", found.condition),
-            false => "the others do not follow from them".to_owned(),
+        .label(if found.condition.is_finite() {
+            format!("their condition number is {:.1e}", found.condition)
+        } else {
+            "the others do not follow from them".to_owned()
         })
         .help(format!(
             "write {}, whose condition number is {:.1}",

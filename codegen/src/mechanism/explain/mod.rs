@@ -112,10 +112,20 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
             1 => format!("{joints} joints move an end that shares only one motion with it"),
             _ => format!("{joints} joints move an end that has only {motions} motions"),
         })
-        .help(match matches!(leg.end.as_ref().map(|end| &end.value), Some(description::End::Point { along, .. }) if along.contains(&false)) {
-            true => "leave out a joint, let one follow others such as theta = \"-q2\", or let the end share more: `along` with more directions, or left out",
-            false => "leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\"",
-        }),
+        .help(loose_help(leg)),
+    }
+}
+
+/// How to remove a motion that a leg's joints have and its end does not.
+fn loose_help(leg: &description::Leg) -> &'static str {
+    let shares_few_directions = match leg.end.as_ref().map(|end| &end.value) {
+        Some(description::End::Point { along, .. }) => along.contains(&false),
+        _ => false,
+    };
+    if shares_few_directions {
+        "leave out a joint, let one follow others such as theta = \"-q2\", or let the end share more: `along` with more directions, or left out"
+    } else {
+        "leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\""
     }
 }
 
@@ -135,9 +145,10 @@ pub(super) fn home_error(
                 format!("{kind} `{}` is singular at the home configuration", leg.name.value),
                 leg.span.clone(),
             )
-            .label(match condition.is_finite() {
-                true => format!("its Jacobian has the condition number {condition:.1e}"),
-                false => "its Jacobian has no inverse".to_owned(),
+            .label(if condition.is_finite() {
+                format!("its Jacobian has the condition number {condition:.1e}")
+            } else {
+                "its Jacobian has no inverse".to_owned()
             })
             .help(format!("choose a home pose where the {kind} is neither stretched nor folded, and joints whose motions are independent"))
         }

@@ -16,7 +16,7 @@ pub(super) fn lanes(draft: &Draft<'_>, columns: Columns) -> Option<Lanes> {
     };
     let (kept, columns) = kept_columns(parameters, draft.assembler.mechanism.legs.len())?;
     let arena = Arena::new();
-    draft.template.stand_in(&arena);
+    draft.template.substitute_placeholders(&arena);
     let mechanism = &draft.template.mechanism;
     let derived = derive(&arena, mechanism, &selection, draft.function, draft.from);
     let mut derived = derived.ok()?;

@@ -16,7 +16,8 @@ mod draft;
 mod fields;
 mod kept;
 mod outcome;
-mod stands;
+mod placeholders;
+
 mod sums;
 mod template;
 

@@ -1,5 +1,6 @@
-//! What programs in lanes give, leg by leg, beside what straight ones give.
+//! Results of programs in lanes, compared with those of straight programs.
 
+use crate::cas::InputElement;
 use crate::derivation::{BodyParameter, ROWS, SUMS};
 use crate::evaluation::Rows;
 use crate::lowering::{Array, Column, Condition, Elements, Entry, Gathered, Lanes, LegRows};
@@ -14,11 +15,11 @@ const STATES: usize = 4;
 /// The values of an input by its name.
 type Given<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
 
-/// How small at home what a leg divides by may be, beside what it is at other states.
+/// A divisor of a leg vanishes at home if it is below this part of its magnitude at other states.
 const VANISHING: f64 = 1e-4;
 
-/// Whether no leg divides by what vanishes at home: the numbers of the leg that stands for all are not those of any, so
-/// what is zero for these may have been none for it.
+/// Whether no leg divides by a value that vanishes at home. The template has numbers of no leg, so a value that is zero
+/// for a leg may not have been zero for the template.
 pub(super) fn is_regular_at_home(assembler: &Assembler<'_>, lanes: &Lanes) -> bool {
     let guards = lanes.program.guards.iter().zip(&lanes.homes);
     let of_legs = guards.filter(|(guard, _)| matches!(guard.condition, Condition::Leg { .. }));
@@ -98,7 +99,11 @@ fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<
 fn following(lanes: &Lanes, sums: &Sums, given: &Given<'_>) -> Option<Vec<f64>> {
     let added = summed(lanes, sums.count, given)?;
     let rows = rows_of(lanes, sums.count, given)?;
-    let solution = value(&sums.program, &of_sums([&added, &rows]))?;
+    let inputs = GatheredInputs {
+        sums: &added,
+        rows: &rows,
+    };
+    let solution = value(&sums.program, &|name| inputs.get(name))?;
     if !matches!(sums.rows, LegRows::Times(_)) {
         return Some(solution);
     }
@@ -114,12 +119,33 @@ fn following(lanes: &Lanes, sums: &Sums, given: &Given<'_>) -> Option<Vec<f64>> 
     Some(output)
 }
 
-/// The inputs of what follows from sums and rows.
-fn of_sums<'v>([sums, rows]: [&'v [f64]; 2]) -> impl Fn(&str) -> Option<Vec<f64>> + 'v {
-    move |name| match name {
-        SUMS => Some(sums.to_vec()),
-        ROWS => Some(rows.to_vec()),
-        _ => None,
+/// The inputs of a program that solves with what all legs have contributed.
+#[derive(Clone, Copy)]
+pub(super) struct GatheredInputs<'v> {
+    /// The sums over the legs.
+    pub(super) sums: &'v [f64],
+    /// The numbers of the legs' rows.
+    pub(super) rows: &'v [f64],
+}
+
+impl GatheredInputs<'_> {
+    /// An input by its name.
+    fn get(&self, name: &str) -> Option<Vec<f64>> {
+        match name {
+            SUMS => Some(self.sums.to_vec()),
+            ROWS => Some(self.rows.to_vec()),
+            _ => None,
+        }
+    }
+
+    /// An element of an input.
+    pub(super) fn element(&self, element: InputElement) -> Option<f64> {
+        let values = match element.array {
+            SUMS => self.sums,
+            ROWS => self.rows,
+            _ => return None,
+        };
+        values.get(element.index).copied()
     }
 }
 
@@ -155,9 +181,9 @@ pub(super) fn summed(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<V
 }
 
 /// The values of what is guarded in a program of sums and rows.
-pub(super) fn guarded(program: &Program, values: [&[f64]; 2]) -> Option<Vec<f64>> {
+pub(super) fn guarded(program: &Program, inputs: GatheredInputs<'_>) -> Option<Vec<f64>> {
     let guards: Vec<Operand> = program.guards.iter().map(|g| g.operand).collect();
-    value_of(program, &guards, &of_sums(values))
+    value_of(program, &guards, &|name| inputs.get(name))
 }
 
 /// An input of a program in lanes, for a leg.

@@ -1,9 +1,9 @@
 //! Functions of given parameters in lanes: what a leg adds to sums over all of them, and what follows from these.
 
 use super::draft::Draft;
-use super::outcome::{at_home, guarded, rows_of, summed};
+use super::outcome::{GatheredInputs, at_home, guarded, rows_of, summed};
 use crate::cas::{Arena, InputElement};
-use crate::derivation::{Addends, DynamicsBy, ROWS, SUMS, Selection};
+use crate::derivation::{Addends, DynamicsBy, FunctionForm, LegRowLayout, Selection};
 use crate::derivation::{derive_addends, derive_of_rows, derive_of_sums};
 use crate::lowering::{Condition, Gathered, Lanes, LegRows, Program, Sums};
 
@@ -25,9 +25,14 @@ pub(super) fn lanes(draft: &Draft<'_>) -> Option<Lanes> {
 
 fn of_selection(draft: &Draft<'_>, selection: &Selection) -> Option<Lanes> {
     let arena = Arena::new();
-    draft.template.stand_in(&arena);
+    draft.template.substitute_placeholders(&arena);
     let mechanism = &draft.template.mechanism;
-    let addends = derive_addends(&arena, mechanism, selection, (draft.function, draft.from));
+    let addends = derive_addends(
+        &arena,
+        mechanism,
+        selection,
+        FunctionForm::new(draft.function, draft.from),
+    );
     let Addends {
         derived,
         count,
@@ -49,38 +54,43 @@ fn of_selection(draft: &Draft<'_>, selection: &Selection) -> Option<Lanes> {
     let given = |name: &str| at_home(draft.assembler, name);
     let added = summed(&lanes, count, &given)?;
     let rows = rows_of(&lanes, count, &given)?;
-    sums.program = following(draft, &lanes, &sums, [&added, &rows])?;
+    let at_home = GatheredInputs {
+        sums: &added,
+        rows: &rows,
+    };
+    sums.program = following(draft, &lanes, &sums, at_home)?;
     lanes.gathered = Gathered::Sums(sums);
     Some(lanes)
 }
 
-/// The program of what follows from the sums and the rows, which have these values at home.
+/// The program that solves with the sums and rows of all legs, whose values at home are given.
 fn following(
     draft: &Draft<'_>,
     lanes: &Lanes,
     sums: &Sums,
-    [added, rows]: [&[f64]; 2],
+    at_home: GatheredInputs<'_>,
 ) -> Option<Program> {
     let arena = Arena::new();
     let mechanism = draft.assembler.mechanism;
-    let standing = |element: InputElement| match element.array {
-        SUMS => added.get(element.index).copied(),
-        ROWS => rows.get(element.index).copied(),
-        _ => None,
-    };
-    let (dof, legs) = (mechanism.dof(), mechanism.legs.len());
+    let home = |element: InputElement| at_home.element(element);
+    let dof = mechanism.dof();
     let derived = match sums.rows {
         LegRows::Given(_) => {
             let entries = lanes.program.entries[2 * sums.count..].iter();
-            let is_there: Vec<bool> = entries.map(|entry| !entry.is_zero()).collect();
-            derive_of_rows(&arena, (dof, legs), &is_there, &standing)?
+            let is_present: Vec<bool> = entries.map(|entry| !entry.is_zero()).collect();
+            let layout = LegRowLayout {
+                dof,
+                legs: mechanism.legs.len(),
+                is_present: &is_present,
+            };
+            derive_of_rows(&arena, &layout, &home)?
         }
         _ => derive_of_sums(&arena, draft.function, dof),
     };
     let search = draft.assembler.search;
-    let program = search.lower_with(&arena, mechanism, draft.function, &derived, &standing);
+    let program = search.lower_with(&arena, mechanism, draft.function, &derived, &home);
     let mut program = program.ok()?;
-    let values = guarded(&program, [added, rows])?;
+    let values = guarded(&program, at_home)?;
     for (guard, value) in program.guards.iter_mut().zip(values) {
         if let Condition::Platform { home, .. } = &mut guard.condition {
             *home = value.abs();

@@ -1,7 +1,7 @@
-//! A leg that stands for all legs of its kind: the numbers in which they differ are elements of an array.
+//! One leg as a template of all legs of its kind: the numbers in which they differ are elements of an array.
 
 use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
-use super::stands::{Constant, Stands};
+use super::placeholders::{Constant, Placeholders};
 use crate::cas::{Angle, Arena, InputElement, Number};
 use crate::derivation::working_modes;
 use crate::mechanism::{Leg, Mechanism};
@@ -9,10 +9,10 @@ use crate::mechanism::{Leg, Mechanism};
 /// The name of the array.
 pub(super) const ARRAY: &str = "of_leg";
 
-/// A robot whose first leg stands for all.
+/// A robot whose first leg is the template of all legs.
 #[derive(Debug)]
 pub(super) struct Template {
-    /// The robot; where the legs differ, the first one has numbers of no meaning.
+    /// The robot; where the legs differ, the first one has placeholders.
     pub(super) mechanism: Mechanism,
     /// The numbers in which they differ.
     constants: Vec<Constant>,
@@ -27,21 +27,21 @@ impl Template {
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {
             return None;
         }
-        let mut stands = Stands::new();
+        let mut placeholders = Placeholders::new();
         let mut legs = mechanism.legs.clone();
         let names = names_of_numbers(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(numbers).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.number(all, &names[at]);
+            *of_legs[0][at] = placeholders.number(all, &names[at]);
         }
         let names = names_of_angles(first);
         let mut of_legs: Vec<_> = legs.iter_mut().map(angles).collect();
         for at in 0..of_legs[0].len() {
             let all = of_legs.iter().map(|of_leg| *of_leg[at]).collect();
-            *of_legs[0][at] = stands.angle(all, &names[at])?;
+            *of_legs[0][at] = placeholders.angle(all, &names[at])?;
         }
-        let mut constants = stands.constants;
+        let mut constants = placeholders.constants;
         legs[0].name = name(&mechanism.legs);
         let mut home = mechanism.home.clone();
         home.signs = signs(mechanism, &mut constants);
@@ -61,8 +61,8 @@ impl Template {
         self.constants.len()
     }
 
-    /// Lets elements of the array stand for the numbers wherever they come up in a graph.
-    pub(super) fn stand_in(&self, arena: &Arena) {
+    /// Replaces the placeholders in a graph by elements of the array.
+    pub(super) fn substitute_placeholders(&self, arena: &Arena) {
         for (index, constant) in self.constants.iter().enumerate() {
             match constant.number {
                 Some(number) => arena.stand_for(number, ARRAY, index),
@@ -94,10 +94,9 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     }
     let leg = &mechanism.legs[0].name;
     let sign = |root: usize| {
-        let values = modes.iter().map(|mode| match mode[root] == first[root] {
-            true => 1.0,
-            false => -1.0,
-        });
+        let values = modes
+            .iter()
+            .map(|mode| if mode[root] == first[root] { 1.0 } else { -1.0 });
         let values: Vec<f64> = values.collect();
         let index = constants.len();
         values.contains(&-1.0).then(|| {
@@ -115,7 +114,7 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     (0..first.len()).map(sign).collect()
 }
 
-/// What the leg that stands for all is called: as no leg is.
+/// The name of the template, which no leg has.
 fn name(legs: &[Leg]) -> String {
     let mut name = "leg".to_owned();
     while legs.iter().any(|leg| leg.name == name) {

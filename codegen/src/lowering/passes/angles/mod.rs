@@ -19,13 +19,13 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
         .map(|&turn| context.turns[turn as usize].direction.clone())
         .collect();
     let mut work = Work::new(dag);
-    let mut units = Vec::new();
+    let mut units: Vec<CosineSine> = Vec::new();
     for (at, how) in plan(&directions) {
         let (turn, direction) = (turns[at], &directions[at]);
         let unit = match how {
             Plan::Direct => work.direct(turn, direction),
             Plan::Sum { of, rest } => {
-                let mut parts = of.iter().map(|&(at, sign)| turned(units[at], sign < 0));
+                let mut parts = of.iter().map(|&(at, sign)| units[at].with_sign(sign < 0));
                 let mut products = Vec::new();
                 let mut angle = match parts.next() {
                     Some(first) => first,
@@ -46,12 +46,21 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     dag.measure_depths();
 }
 
-/// Cosine and sine.
-type Unit = (Edge, Edge);
+/// Cosine and sine of an angle.
+#[derive(Clone, Copy)]
+struct CosineSine {
+    cosine: Edge,
+    sine: Edge,
+}
 
-/// The sine changes its sign with the angle.
-const fn turned((cosine, sine): Unit, is_mirrored: bool) -> Unit {
-    (cosine, sine.times(is_mirrored))
+impl CosineSine {
+    /// Those of the negative angle, if it `is_negative`.
+    const fn with_sign(self, is_negative: bool) -> Self {
+        Self {
+            cosine: self.cosine,
+            sine: self.sine.times(is_negative),
+        }
+    }
 }
 
 /// The numbers of all angles whose sine or cosine the entries need, in the order of their first use.
@@ -110,20 +119,23 @@ impl<'d> Work<'d> {
     }
 
     /// Cosine and sine of the angle's value.
-    fn direct(&mut self, turn: u32, direction: &Direction) -> Unit {
+    fn direct(&mut self, turn: u32, direction: &Direction) -> CosineSine {
         let angle = Angle::Value(self.value(direction));
         let (cosine, sine) = self.nodes(turn);
         self.dag.redefine(cosine, Definition::Cosine(angle));
         self.dag.redefine(sine, Definition::Sine(angle));
         self.dag.compute_together(&[cosine, sine]);
-        (Edge::to(cosine), Edge::to(sine))
+        CosineSine {
+            cosine: Edge::to(cosine),
+            sine: Edge::to(sine),
+        }
     }
 
     /// The angle's cosine and sine are those of a sum.
-    fn composed(&mut self, turn: u32, (by_cosine, by_sine): Unit, products: Vec<usize>) -> Unit {
+    fn composed(&mut self, turn: u32, by: CosineSine, products: Vec<usize>) -> CosineSine {
         let (cosine, sine) = self.nodes(turn);
         let mut together = products;
-        for (node, by) in [(cosine, by_cosine), (sine, by_sine)] {
+        for (node, by) in [(cosine, by.cosine), (sine, by.sine)] {
             // The sum's own node is not used: the angle's takes its definition, for later angles as well.
             let definition = self.dag.definition(by.node());
             self.dag.redefine(node, definition);
@@ -131,7 +143,10 @@ impl<'d> Work<'d> {
             together.push(node);
         }
         self.dag.compute_together(&together);
-        (Edge::to(cosine), Edge::to(sine))
+        CosineSine {
+            cosine: Edge::to(cosine),
+            sine: Edge::to(sine),
+        }
     }
 
     /// The value of an angle in radians.
@@ -162,7 +177,7 @@ impl<'d> Work<'d> {
         }
     }
 
-    fn constant(&mut self, angle: ConstantAngle) -> Unit {
+    fn constant(&mut self, angle: ConstantAngle) -> CosineSine {
         let (cosine, sine) = angle.cosine_and_sine();
         let mut node = |number: Number| {
             let definition = Definition::Constant(Constant::new(number.value().abs()));
@@ -185,21 +200,24 @@ impl<'d> Work<'d> {
             };
             edge.times(is_negative)
         };
-        (node(cosine), node(sine))
+        CosineSine {
+            cosine: node(cosine),
+            sine: node(sine),
+        }
     }
 
     /// The addition theorem; the products are noted.
-    fn sum(&mut self, (ca, sa): Unit, (cb, sb): Unit, products: &mut Vec<usize>) -> Unit {
+    fn sum(&mut self, a: CosineSine, b: CosineSine, products: &mut Vec<usize>) -> CosineSine {
         let mut product = |a: Edge, b: Edge| {
             let product = self.node(Definition::Product(a.positive(), b.positive()));
             products.push(product.node());
             product.times(a.is_negative() != b.is_negative())
         };
-        let (cc, ss) = (product(ca, cb), product(sa, sb));
-        let (sc, cs) = (product(sa, cb), product(ca, sb));
+        let (cc, ss) = (product(a.cosine, b.cosine), product(a.sine, b.sine));
+        let (sc, cs) = (product(a.sine, b.cosine), product(a.cosine, b.sine));
         let cosine = self.node(Definition::Sum(cc, ss.times(true)));
         let sine = self.node(Definition::Sum(sc, cs));
         products.extend([cosine.node(), sine.node()]);
-        (cosine, sine)
+        CosineSine { cosine, sine }
     }
 }

@@ -1,0 +1,192 @@
+//! Mass, first moment and inertia of rigidly connected bodies about a frame's origin, which are added up
+//! body by body.
+
+use super::body::second_moment;
+use crate::cas::{Arena, Expr, Matrix3, Vector3};
+use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
+use crate::derivation::kinematics::turn::Turn;
+use crate::derivation::names::{AXES, Names};
+use crate::derivation::parameter::BodyParameter;
+use crate::description::StandardParameter;
+
+/// The inertia of a body, or of several that move as one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inertia<'a> {
+    /// Mass.
+    pub(crate) mass: Expr<'a>,
+    /// First moment.
+    pub(crate) first: Vector3<'a>,
+    /// Inertia about the frame's origin, symmetric.
+    pub(crate) second: Matrix3<'a>,
+}
+
+impl<'a> Inertia<'a> {
+    /// Of nothing.
+    pub(crate) fn zero(arena: &'a Arena) -> Self {
+        Self {
+            mass: arena.zero(),
+            first: Vector3::zero(arena),
+            second: Matrix3([[arena.zero(); 3]; 3]),
+        }
+    }
+
+    /// Of a mass in the origin.
+    pub(crate) fn point(mass: Expr<'a>) -> Self {
+        Self {
+            mass,
+            ..Self::zero(mass.arena())
+        }
+    }
+
+    /// Of the inertial parameters that are a body's own, with their values; parameters of two bodies that
+    /// are one add up.
+    pub(crate) fn of(
+        arena: &'a Arena,
+        values: &[(BodyParameter, Expr<'a>)],
+        own: &dyn Fn(BodyParameter) -> Option<StandardParameter>,
+    ) -> Self {
+        use StandardParameter as P;
+        let mut sum = Self::zero(arena);
+        for (parameter, value) in values {
+            let (i, j) = match own(*parameter) {
+                Some(P::M) => {
+                    sum.mass = sum.mass + *value;
+                    continue;
+                }
+                Some(P::Mx) => (0, 3),
+                Some(P::My) => (1, 3),
+                Some(P::Mz) => (2, 3),
+                Some(P::Xx) => (0, 0),
+                Some(P::Xy) => (0, 1),
+                Some(P::Xz) => (0, 2),
+                Some(P::Yy) => (1, 1),
+                Some(P::Yz) => (1, 2),
+                Some(P::Zz) => (2, 2),
+                Some(P::Ia | P::Fv | P::Fs | P::Off | P::K) | None => continue,
+                Some(P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl) => continue,
+            };
+            if j == 3 {
+                sum.first.0[i] = sum.first.0[i] + *value;
+                continue;
+            }
+            sum.second.0[i][j] = sum.second.0[i][j] + *value;
+            sum.second.0[j][i] = sum.second.0[i][j];
+        }
+        sum
+    }
+
+    /// The same bodies in the axes of the antecedent frame, about the same origin.
+    pub(crate) fn turned_back(&self, turn: &Turn<'a>) -> Self {
+        Self {
+            mass: self.mass,
+            first: turn.back(self.first),
+            second: turn.back_symmetric(self.second),
+        }
+    }
+
+    /// The same bodies in other axes, about the same origin.
+    pub(crate) fn rotated(&self, rotation: Matrix3<'a>) -> Self {
+        let moved = rotation * self.second;
+        let entry = |i: usize, j: usize| moved.row(i.min(j)).dot(rotation.row(i.max(j)));
+        Self {
+            mass: self.mass,
+            first: rotation * self.first,
+            second: Matrix3(std::array::from_fn(|i| {
+                std::array::from_fn(|j| entry(i, j))
+            })),
+        }
+    }
+
+    /// What the bodies, about an origin at `at`, add to those of a frame with the same axes.
+    pub(crate) fn moved_onto(&self, onto: &Self, at: Vector3<'a>) -> Self {
+        let arm = at.scaled(self.mass);
+        let (before, after) = (self.first, self.first + arm);
+        let mut second = onto.second;
+        // Σ m (r² 1 - r rᵀ) at r + l: with g = 2 h + m l, the products g_k l_k.
+        let along: [Expr<'a>; 3] = std::array::from_fn(|k| (before.0[k] + after.0[k]) * at.0[k]);
+        for i in 0..3 {
+            for j in i..3 {
+                let more = if i == j {
+                    along[(i + 1) % 3] + along[(i + 2) % 3]
+                } else {
+                    -(after.0[i] * at.0[j] + before.0[j] * at.0[i])
+                };
+                second.0[i][j] = second.0[i][j] + self.second.0[i][j] + more;
+                second.0[j][i] = second.0[i][j];
+            }
+        }
+        Self {
+            mass: onto.mass + self.mass,
+            first: onto.first + arm + before,
+            second,
+        }
+    }
+
+    /// What a joint that turns about z leaves as it is, and the rest: mass, the first moment along the axis,
+    /// and as much inertia about x as about y, which is that of a rod along the axis.
+    pub(crate) fn split_about_z(&self) -> [Self; 2] {
+        let arena = self.mass.arena();
+        let (mut rod, mut rest) = (Self::zero(arena), *self);
+        let across = self.second.0[1][1];
+        rod.mass = self.mass;
+        rod.first.0[2] = self.first.z();
+        rod.second.0[0][0] = across;
+        rod.second.0[1][1] = across;
+        rest.mass = arena.zero();
+        rest.first.0[2] = arena.zero();
+        rest.second.0[0][0] = self.second.0[0][0] - across;
+        rest.second.0[1][1] = arena.zero();
+        [rod, rest]
+    }
+
+    /// What a joint that slides leaves as it is, the inertia, and the rest.
+    pub(crate) fn split_along_z(&self) -> [Self; 2] {
+        let (mut kept, mut rest) = (Self::zero(self.mass.arena()), *self);
+        kept.second = self.second;
+        rest.second = Matrix3([[self.mass.arena().zero(); 3]; 3]);
+        [kept, rest]
+    }
+
+    /// The moment of the inertia about the body's axes at a velocity and an acceleration of its turn:
+    /// h(ω̇) + ω × h(ω).
+    pub(crate) fn turning_moment(&self, omega: Vector3<'a>, alpha: Vector3<'a>) -> Vector3<'a> {
+        use StandardParameter as P;
+        let arena = self.mass.arena();
+        let s = &self.second.0;
+        let diagonal = |i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            s[i][i] * alpha.0[i] + (s[k][k] - s[j][j]) * (omega.0[j] * omega.0[k])
+        };
+        let beside = [(P::Xy, s[0][1]), (P::Xz, s[0][2]), (P::Yz, s[1][2])];
+        let start = Vector3(std::array::from_fn(diagonal));
+        beside.into_iter().fold(start, |sum, (symbol, value)| {
+            sum + second_moment(arena, symbol, omega, alpha).scaled(value)
+        })
+    }
+
+    /// Wrench about the origin that accelerates the body from rest.
+    pub(crate) fn wrench(&self, acceleration: &SpatialMotion<'a>) -> Wrench<'a> {
+        let SpatialMotion { linear, angular } = *acceleration;
+        Wrench {
+            force: linear.scaled(self.mass) + angular.cross(self.first),
+            moment: self.second * angular + self.first.cross(linear),
+        }
+    }
+
+    /// Names what is no parameter itself: `mass2_leg1`, `first2_x_leg1`, `inertia2_xy_leg1`.
+    pub(crate) fn name(&self, names: &mut Names<'a>, body: &str, place: &str) {
+        let end = if place.is_empty() {
+            String::new()
+        } else {
+            format!("_{place}")
+        };
+        names.one(self.mass, format!("mass{body}{end}"));
+        names.vector(self.first, &format!("first{body}"), place);
+        for (i, row) in AXES.iter().enumerate() {
+            for (j, column) in AXES.iter().enumerate().skip(i) {
+                let what = format!("inertia{body}_{row}{column}{end}");
+                names.one(self.second.0[i][j], what);
+            }
+        }
+    }
+}

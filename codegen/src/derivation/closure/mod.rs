@@ -1,0 +1,6 @@
+//! Closure of legs and reduced Jacobians, eqs. (9) to (13), and the velocity of a platform with parasitic motion.
+
+pub(crate) mod bias;
+pub(crate) mod leg;
+pub(crate) mod leg_closure;
+pub(crate) mod parasitic_motion;

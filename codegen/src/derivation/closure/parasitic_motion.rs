@@ -1,0 +1,138 @@
+//! A platform that moves parasitic_motion: its legs block directions A t = 0 that change with the pose, so that of the
+//! six components of its velocity t the independent ones v give the others.
+//!
+//! With the rows A split by coordinates into those of the independent ones and the dependent ones, t = D v,
+//! where D is the identity on the independent coordinates and -A_d⁻¹ A_i on the others; what is derived per
+//! component of t, rows of reduced Jacobians and forces, goes to v by D.
+
+use crate::cas::{Arena, Expr, Vector3};
+use crate::derivation::kinematics::spatial::SpatialMotion;
+use crate::derivation::linear_algebra::constant_columns::Solved;
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::linear_algebra::linear::{apply, transposed};
+
+/// Components of a free body's velocity.
+pub(crate) const SIX: usize = 6;
+
+/// A row of A: a constraint that a leg imposes on the platform's velocity.
+#[derive(Debug, Clone)]
+pub(crate) struct BlockedRow<'a> {
+    /// The leg.
+    pub(crate) leg: usize,
+    /// The number of the constraint among those of the leg.
+    pub(crate) index: usize,
+    /// The row, per component of t.
+    pub(crate) entries: Vec<Expr<'a>>,
+}
+
+/// The components of a free body's velocity that are not independent.
+pub(crate) fn dependent_components(independent: &[usize]) -> Vec<usize> {
+    (0..SIX).filter(|at| !independent.contains(at)).collect()
+}
+
+/// How the velocity of a platform with parasitic motion follows from its independent coordinates.
+#[derive(Debug)]
+pub struct ParasiticMotion<'a> {
+    /// Which components of t the independent coordinates are.
+    independent: Vec<usize>,
+    /// The others.
+    pub(crate) dependent: Vec<usize>,
+    /// The rows of A.
+    pub(crate) rows: Vec<BlockedRow<'a>>,
+    /// A, per component of t.
+    pub(crate) matrix: Rows<'a>,
+    /// A_d.
+    pub(crate) solved: Solved<'a>,
+    /// -A_d⁻¹ A_i.
+    pub(crate) follow: Rows<'a>,
+}
+
+impl<'a> ParasiticMotion<'a> {
+    /// Solves rows of A, as many as there are dependent coordinates. `independent` are the components of t that are
+    /// independent; `home` evaluates an expression at the home configuration. `None` if the rows do not determine the
+    /// dependent components.
+    pub(crate) fn new(
+        independent: Vec<usize>,
+        rows: Vec<BlockedRow<'a>>,
+        home: &dyn Fn(Expr<'a>) -> f64,
+    ) -> Option<Self> {
+        let dependent = dependent_components(&independent);
+        let matrix: Rows<'a> = rows.iter().map(|row| row.entries.clone()).collect();
+        if rows.len() < dependent.len() {
+            return None;
+        }
+        let part = |columns: &[usize]| -> Rows<'a> {
+            let row = |row: &Vec<Expr<'a>>| columns.iter().map(|&c| row[c]).collect();
+            matrix.iter().map(row).collect()
+        };
+        let (own, others) = (part(&independent), part(&dependent));
+        let solved = Solved::new(&others, home)?;
+        let column = |column: &Vec<Expr<'a>>| -> Vec<Expr<'a>> {
+            let found = solved.solve(column).into_iter();
+            found.map(|entry| -entry).collect()
+        };
+        let follow = transposed(&transposed(&own).iter().map(column).collect());
+        Some(Self {
+            independent,
+            dependent,
+            rows,
+            matrix,
+            solved,
+            follow,
+        })
+    }
+
+    /// t of the independent velocities.
+    pub(crate) fn velocity(&self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        self.together(twist, &apply(&self.follow, twist))
+    }
+
+    /// Six components from the independent ones and the others.
+    pub(crate) fn together(&self, own: &[Expr<'a>], others: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let component = |at: usize| match self.independent.iter().position(|&own| own == at) {
+            Some(place) => own[place],
+            None => {
+                let place = self.dependent.iter().position(|&own| own == at);
+                others[place.unwrap_or_default()]
+            }
+        };
+        (0..SIX).map(component).collect()
+    }
+
+    /// Dᵀ of six components: forces, or a row per component of t.
+    pub(crate) fn on_independent(&self, six: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let entry = |(column, &own): (usize, &usize)| {
+            let others = self.dependent.iter().zip(&self.follow);
+            others.fold(six[own], |sum, (&at, row)| sum + row[column] * six[at])
+        };
+        self.independent.iter().enumerate().map(entry).collect()
+    }
+
+    /// The columns of D: velocity of the platform's origin and angular velocity per independent rate.
+    pub(crate) fn partials(&self, arena: &'a Arena) -> Vec<SpatialMotion<'a>> {
+        let rows = self.platform_jacobian(arena);
+        let part = |column: usize, first: usize| {
+            Vector3(std::array::from_fn(|axis| rows[first + axis][column]))
+        };
+        let columns = 0..self.independent.len();
+        let column = |c: usize| SpatialMotion {
+            linear: part(c, 0),
+            angular: part(c, 3),
+        };
+        columns.map(column).collect()
+    }
+
+    /// D, 6 x r.
+    pub(crate) fn platform_jacobian(&self, arena: &'a Arena) -> Rows<'a> {
+        let count = self.independent.len();
+        let unit = |at: usize| (0..count).map(move |c| arena.integer(i64::from(c == at)));
+        let row = |at: usize| match self.independent.iter().position(|&own| own == at) {
+            Some(place) => unit(place).collect(),
+            None => {
+                let place = self.dependent.iter().position(|&own| own == at);
+                self.follow[place.unwrap_or_default()].clone()
+            }
+        };
+        (0..SIX).map(row).collect()
+    }
+}

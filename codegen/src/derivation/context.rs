@@ -1,0 +1,132 @@
+//! The context in which a function is derived: the robot, the inputs that were used, and the conditions that arose.
+
+use super::guard::{Guard, GuardKind};
+use super::motion_input::MotionInput;
+use super::parameter::BodyParameter;
+use super::selection::{JointsBy, Selection};
+use super::underivable::Underivable;
+use crate::cas::{Arena, Expr};
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::robot::Robot;
+use crate::mechanism::Mechanism;
+use overact_core::ActuatorGroup;
+
+/// Whose parameters have values, in what is linear in them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// All of the robot's.
+    #[default]
+    Robot,
+    /// Those of this leg; all others are zero.
+    Leg(usize),
+    /// Those of the platform and the payload; all others are zero.
+    Platform,
+}
+
+impl Owner {
+    /// Whether a parameter has its value.
+    pub(super) fn has(self, parameter: BodyParameter) -> bool {
+        match (self, parameter) {
+            (Self::Robot, _) => true,
+            (Self::Leg(own), BodyParameter::Leg { leg, .. }) => own == leg,
+            (Self::Platform, BodyParameter::Leg { .. }) => false,
+            (Self::Leg(_), _) => false,
+            (Self::Platform, _) => true,
+        }
+    }
+}
+
+/// The context of a function that is derived.
+pub(super) struct DerivationContext<'a, 's> {
+    pub(super) robot: Robot<'a>,
+    pub(super) selection: &'s Selection,
+    pub(super) from: MotionInput,
+    /// The independent velocities that follow from the actuators'.
+    pub(super) twist: Vec<Expr<'a>>,
+    pub(super) inputs: Vec<(&'static str, usize)>,
+    /// Whose parameters have values.
+    pub(super) owner: Owner,
+    pub(super) guards: Vec<Guard<'a>>,
+}
+
+impl<'a, 's> DerivationContext<'a, 's> {
+    /// Derives the robot; `still` are coordinates of the pose that are known to be zero.
+    ///
+    /// # Errors
+    /// See [`Robot::new`].
+    pub(super) fn new(
+        arena: &'a Arena,
+        mechanism: &'a Mechanism,
+        selection: &'s Selection,
+        from: MotionInput,
+        still: &[usize],
+    ) -> Result<Self, Underivable> {
+        let configuration = match (from, selection.joints) {
+            (MotionInput::Pose | MotionInput::Actuators, JointsBy::Rule) => MotionInput::Pose,
+            _ => MotionInput::Joints,
+        };
+        let robot = Robot::new(
+            arena,
+            mechanism,
+            configuration,
+            &selection.formulation,
+            still,
+        )?;
+        Ok(Self {
+            inputs: configuration_inputs(&robot, configuration),
+            robot,
+            selection,
+            from,
+            twist: Vec::new(),
+            owner: Owner::default(),
+            guards: Vec::new(),
+        })
+    }
+
+    /// An input of the function.
+    pub(super) fn input(&mut self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
+        if !self.inputs.contains(&(name, count)) {
+            self.inputs.push((name, count));
+        }
+        self.robot.inputs(name, count)
+    }
+
+    /// The twist or acceleration zero.
+    pub(super) fn zeros(&self) -> Vec<Expr<'a>> {
+        vec![self.robot.arena.zero(); self.robot.mechanism.dof()]
+    }
+
+    /// The determinants of the actuators' rows, which decide whether they determine the platform's motion.
+    pub(super) fn guard_platform(&mut self, values: &[Expr<'a>], actuators: ActuatorGroup) {
+        for value in values {
+            let (_, base) = value.factor_and_base();
+            if base.as_number().is_none() {
+                let kind = GuardKind::Platform {
+                    home: self.robot.at_home(base).abs(),
+                    actuators,
+                };
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: String::new(),
+                });
+            }
+        }
+    }
+}
+
+/// The inputs from which sines and cosines of the configuration are had.
+fn configuration_inputs(robot: &Robot<'_>, from: MotionInput) -> Vec<(&'static str, usize)> {
+    let joints = ("joints", robot.mechanism.joints().len());
+    let pose = ("pose", robot.mechanism.pose_len());
+    match (robot.mechanism.is_tree(), from) {
+        (true, _) => vec![joints],
+        (false, MotionInput::Pose | MotionInput::Actuators) => vec![pose],
+        (false, MotionInput::Joints) => vec![pose, joints],
+    }
+}
+
+/// A vector as a matrix of one column.
+pub(super) fn column(values: Vec<Expr<'_>>) -> Rows<'_> {
+    values.into_iter().map(|v| vec![v]).collect()
+}

@@ -1,0 +1,60 @@
+//! Friction of a joint per unit of each of its coefficients.
+//!
+//! Friction that differs by direction has the columns (q̇ ± |q̇|)/2 and (sign q̇ ± 1)/2. Their sums and
+//! differences are the columns of symmetric friction, of |q̇| and of the offset, as at every velocity so at
+//! rest, where the sign is 0. What dry friction has more at standstill than at speed falls with the velocity
+//! as 1/(1 + (q̇/v)²), v being the Stribeck velocity: the form of Hess and Soom (*Friction at a lubricated line
+//! contact operating at oscillating sliding velocities*, 1990), which takes no exponential. Friction in
+//! proportion to a load that is known as a function of the position has the column |load| sign q̇.
+
+use crate::cas::{Arena, Expr, Number, Ratio};
+use crate::derivation::robot::Robot;
+use crate::description::StandardParameter;
+use crate::mechanism::JointIndex;
+
+impl<'a> Robot<'a> {
+    /// The friction at a rate per unit of a joint's parameter; none of a parameter that is no friction.
+    pub(crate) fn friction_force(
+        &self,
+        at: JointIndex,
+        symbol: StandardParameter,
+        rate: impl Fn() -> Expr<'a>,
+    ) -> Option<Expr<'a>> {
+        use StandardParameter as P;
+        let one = || self.arena.one();
+        Some(match symbol {
+            P::Fv => rate(),
+            P::Fs => rate().sign(),
+            P::FvPos => (rate() + magnitude(rate())) * half(),
+            P::FvNeg => (rate() - magnitude(rate())) * half(),
+            P::FsPos => (rate().sign() + one()) * half(),
+            P::FsNeg => (rate().sign() - one()) * half(),
+            P::Fst => {
+                let velocity = self.mechanism.joint(at).stribeck;
+                velocity.map_or_else(
+                    || self.arena.zero(),
+                    |velocity| stribeck(self.arena, rate(), velocity),
+                )
+            }
+            P::Fl => rate().sign() * magnitude(self.load(at)),
+            _ => return None,
+        })
+    }
+}
+
+/// sign(q̇) / (1 + (q̇/v)²).
+fn stribeck<'a>(arena: &'a Arena, rate: Expr<'a>, velocity: Number) -> Expr<'a> {
+    let relative = rate * (Number::ONE / velocity);
+    let divisor = relative.squared() + arena.one();
+    arena.assert_never_zero(divisor);
+    rate.sign() / divisor
+}
+
+/// |x|.
+fn magnitude(x: Expr<'_>) -> Expr<'_> {
+    x * x.sign()
+}
+
+fn half() -> Number {
+    Number::ratio(Ratio::new(1, 2).unwrap_or(Ratio::ONE))
+}

@@ -1,0 +1,9 @@
+//! Dynamics with given parameters: joint forces, mass matrices, and the recursion of Newton and Euler.
+
+pub(crate) mod actuated_joint_forces;
+pub(crate) mod composite;
+pub(crate) mod friction;
+pub(crate) mod masses;
+pub(crate) mod newton_euler;
+pub(crate) mod spring;
+pub(crate) mod tree_masses;

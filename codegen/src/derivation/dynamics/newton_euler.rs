@@ -1,0 +1,313 @@
+//! Forces for a motion in the order of Newton and Euler: those of all bodies are summed once on the way
+//! from the tips to the base, where the joints read them off.
+//!
+//! Before that, what a joint leaves as it is of the body behind it is counted to the body before it: a
+//! revolute joint mass, first moment along its axis and the inertia of a rod along it, a prismatic one the
+//! inertia. Which torques the robot needs does not change, and the bodies behind have fewer parameters.
+//!
+//! Legs that stand on a body of another, chains and branches, hand their whole wrench down to it: legs are
+//! taken from the last to the first, for a body that carries one belongs to a leg before.
+
+use super::actuated_joint_forces::ActuatedJointForces;
+use super::composite::Chain;
+use super::tree_masses::{on_carrier, wrench_on_carrier};
+use crate::cas::{Arena, Expr, Number, Vector3};
+use crate::derivation::bodies::body::BodyMotion;
+use crate::derivation::bodies::inertia::Inertia;
+use crate::derivation::bodies::motion::RobotMotion;
+use crate::derivation::kinematics::spatial::Wrench;
+use crate::derivation::linear_algebra::linear::add_to;
+use crate::derivation::names::{coordinate_label, joined};
+use crate::derivation::parameter::BodyParameter;
+use crate::derivation::robot::Robot;
+use crate::mechanism::{End, JointIndex, JointKind, Leg};
+
+impl<'a> Robot<'a> {
+    /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
+    /// does not follow from the configuration.
+    pub(crate) fn summed_forces(
+        &self,
+        motion: &RobotMotion<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+        actuators: &mut ActuatedJointForces<'a>,
+    ) -> Option<Vec<Expr<'a>>> {
+        let mut total = vec![self.arena.zero(); self.mechanism.dof()];
+        // Of a platform that moves parasitic_motion: what all put on its six components, which goes to the others at once.
+        let mut free = vec![self.arena.zero(); self.free.len()];
+        let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|parasitic| parasitic.partials(self.arena));
+        let mut transferred = Transferred::nothing(self.arena, &self.mechanism.legs);
+        let of_legs = self
+            .forces_of_legs(motion, values, &mut transferred)?
+            .into_iter();
+        for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
+            self.arena.enter(&leg.name);
+            for (joint, force) in leg.independent().zip(&forces) {
+                let what = format!("force_on_u{}", leg.joints[joint].name);
+                let _ = force.named(&joined(&[&what, &leg.name]));
+            }
+            actuators.take(index, &mut forces);
+            let state = &self.legs[index];
+            let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
+            match at_end.filter(|_| self.platform.is_some() || self.at_end) {
+                Some(closure) => {
+                    let on_ends = partials.as_ref();
+                    match on_ends.map(|partials| closure.project_on(partials, &forces)) {
+                        Some(own) => add_to(&mut total, own),
+                        None if self.parasitic_motion.is_some() => {
+                            add_to(&mut free, closure.project_at_end(&forces));
+                        }
+                        None => add_to(&mut total, closure.project_at_end(&forces)),
+                    }
+                }
+                None => {
+                    let rows = state.rows[..forces.len()].to_vec();
+                    add_to(&mut total, self.combine(&rows, &forces));
+                }
+            }
+        }
+        self.arena.enter("platform");
+        if let Some(body) = &motion.platform {
+            let whole = with(&transferred.on_platform, &self.platform_inertia(values));
+            let wrench = body.wrench(&whole);
+            self.name_wrench(&wrench, "", "platform");
+            let on_twist = body.project(&self.free, wrench);
+            for (coordinate, force) in self.free.iter().zip(&on_twist) {
+                let what = format!("force_on_{}_platform", coordinate_label(coordinate));
+                let _ = force.named(&what);
+            }
+            if self.parasitic_motion.is_some() {
+                add_to(&mut free, on_twist)
+            } else {
+                add_to(&mut total, on_twist)
+            }
+        }
+        if let Some(parasitic) = &self.parasitic_motion {
+            add_to(&mut total, parasitic.on_independent(&free));
+        }
+        self.arena.enter("");
+        Some(total)
+    }
+
+    /// The forces on the quasi-velocities of all legs.
+    fn forces_of_legs(
+        &self,
+        motion: &RobotMotion<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+        transferred: &mut Transferred<'a>,
+    ) -> Option<Vec<Vec<Expr<'a>>>> {
+        let legs = &self.mechanism.legs;
+        let mut order: Vec<usize> = (0..legs.len()).collect();
+        let meets_another = |leg: &Leg| leg.base_body.is_some() || leg.end_body.is_some();
+        if legs.iter().any(meets_another) {
+            order.reverse();
+        }
+        let mut all = vec![Vec::new(); legs.len()];
+        for index in order {
+            self.arena.enter(&legs[index].name);
+            all[index] = self.summed_leg_forces(motion, values, index, transferred)?;
+        }
+        Some(all)
+    }
+
+    /// The forces on the quasi-velocities of a leg; its base hands its wrench on to the body that it stands on.
+    fn summed_leg_forces(
+        &self,
+        motion: &RobotMotion<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+        index: usize,
+        transferred: &mut Transferred<'a>,
+    ) -> Option<Vec<Expr<'a>>> {
+        let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
+        let chain = self.chain(index, values)?;
+        let mut bodies = chain.bodies();
+        transferred.add_to(index, &mut bodies);
+        if self.lump_end_masses
+            && let Some(end_mass) = chain.take_end_mass(&mut bodies)
+        {
+            transferred.add_end_mass(leg, &end_mass);
+        }
+        let kept = chain.group(&mut bodies, leg.base_body.is_some());
+        let count = leg.joints.len();
+        let mut wrenches: Vec<Wrench<'a>> = Vec::new();
+        let mut about_axes = Vec::new();
+        for (joint, body) in bodies.iter().enumerate() {
+            let own = motion.bodies[index][joint].wrench(body);
+            let suspended = transferred.wrenches[index][joint];
+            let wrench = own.plus(&suspended);
+            about_axes.push(wrench.moment.z());
+            wrenches.push(wrench);
+        }
+        let mut at_base = Wrench::zero(arena);
+        let mut forces = vec![arena.zero(); leg.independent().count()];
+        for j in (0..count).rev() {
+            let joint = &leg.joints[j];
+            let wrench = wrenches[j];
+            self.name_wrench(&wrench, &joint.name, &leg.name);
+            if let Some(before) = joint.antecedent {
+                let onto = chain.on_antecedent(j, &wrench);
+                about_axes[before] = about_axes[before] + onto.lever_moment.z();
+                if state.rates.run[j].is_none() {
+                    about_axes[before] = about_axes[before] + onto.at_joint.moment.z();
+                }
+                wrenches[before] = wrenches[before].plus(&onto.at_antecedent());
+            } else if leg.base_body.is_some() {
+                let onto = chain.on_antecedent(j, &wrench);
+                at_base = at_base.plus(&onto.at_antecedent());
+            }
+            let at = JointIndex {
+                leg: index,
+                joint: j,
+            };
+            let on_joint = values.iter().filter_map(|(p, value)| {
+                let symbol = p.of_joint(index, j).filter(|s| !s.is_inertial())?;
+                Some(self.joint_force(motion, at, symbol) * *value)
+            });
+            let mut on_joint = on_joint.fold(self.known_force(at), |sum, force| sum + force);
+            if joint.kind == JointKind::Prismatic {
+                on_joint = on_joint + wrench.force.z();
+            }
+            let on_joint = on_joint.named(&joined(&["tau", &joint.name, &leg.name]));
+            let (rate, turning) = (&state.rates.joint[j], &state.rates.turning[j]);
+            let share =
+                |i: usize| about_axes[j] * turning.coefficient(i) + on_joint * rate.coefficient(i);
+            let shares = (0..forces.len()).map(share).collect();
+            add_to(&mut forces, shares);
+        }
+        transferred.transfer_to_base_body(arena, leg, &kept, &at_base);
+        Some(forces)
+    }
+}
+
+/// What legs transfer to the bodies on which they are mounted.
+struct Transferred<'a> {
+    /// For the bodies of every leg, the parts of inertias of mounted legs that their joints do not move.
+    inertias: Vec<Vec<Option<Inertia<'a>>>>,
+    /// For the bodies of every leg, the wrenches of mounted legs.
+    wrenches: Vec<Vec<Wrench<'a>>>,
+    /// End masses of legs that are lumped on the platform.
+    on_platform: Inertia<'a>,
+}
+
+impl<'a> Transferred<'a> {
+    fn nothing(arena: &'a Arena, legs: &[Leg]) -> Self {
+        let still = Wrench::zero(arena);
+        let counts = || legs.iter().map(|leg| leg.joints.len());
+        Self {
+            inertias: counts().map(|count| vec![None; count]).collect(),
+            wrenches: counts().map(|count| vec![still; count]).collect(),
+            on_platform: Inertia::zero(arena),
+        }
+    }
+
+    /// Adds the transferred inertias to a leg's bodies.
+    fn add_to(&self, index: usize, bodies: &mut [Inertia<'a>]) {
+        for (body, other) in bodies.iter_mut().zip(&self.inertias[index]) {
+            if let Some(other) = other {
+                *body = with(other, body);
+            }
+        }
+    }
+
+    /// Adds an end mass to the body or platform at which the leg ends.
+    fn add_end_mass(&mut self, leg: &Leg, end_mass: &Inertia<'a>) {
+        let onto = match leg.end_body {
+            Some(body) => self.inertias[body.leg][body.joint]
+                .get_or_insert(Inertia::zero(end_mass.mass.arena())),
+            None => &mut self.on_platform,
+        };
+        *onto = with(end_mass, onto);
+    }
+
+    /// Transfers to the body on which a leg is mounted the wrench at the leg's base, and the inertia that the leg's first
+    /// joints do not move.
+    fn transfer_to_base_body(
+        &mut self,
+        arena: &'a Arena,
+        leg: &Leg,
+        kept: &Inertia<'a>,
+        at_base: &Wrench<'a>,
+    ) {
+        let Some(carrier) = leg.base_body else { return };
+        let kept = on_carrier(arena, leg, kept);
+        let onto = &mut self.inertias[carrier.leg][carrier.joint];
+        *onto = Some(onto.map_or(kept, |onto| with(&kept, &onto)));
+        let wrench = wrench_on_carrier(arena, leg, at_base);
+        let sum = &mut self.wrenches[carrier.leg][carrier.joint];
+        *sum = sum.plus(&wrench);
+    }
+}
+
+/// Two inertias in one frame together.
+fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
+    one.moved_onto(other, Vector3::zero(one.mass.arena()))
+}
+
+impl<'a> BodyMotion<'a> {
+    /// Force and moment about the frame's origin that an inertia needs for the motion.
+    fn wrench(&self, body: &Inertia<'a>) -> Wrench<'a> {
+        let force = self.acceleration.scaled(body.mass) + self.u_matrix * body.first;
+        let moment = body.turning_moment(self.omega, self.alpha);
+        Wrench {
+            force,
+            moment: moment + body.first.cross(self.acceleration),
+        }
+    }
+}
+
+impl<'a> Chain<'_, 'a> {
+    /// Takes a mass at the end point from the last body of a leg, so that the rest has no first moment towards that point.
+    /// The mass is returned in the frame of the body at which the leg ends.
+    fn take_end_mass(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
+        let Some(End::Point {
+            at,
+            along: [true, true, true],
+        }) = self.end()
+        else {
+            return None;
+        };
+        let arena = self.arena();
+        let mut last = bodies.len().checked_sub(1)?;
+        let mut point = Vector3::zero(arena);
+        while self.kind(last) == JointKind::Fixed {
+            let before = self.antecedent(last)?;
+            bodies[before] = self.moved_onto(&bodies[last], &bodies[before], last);
+            bodies[last] = Inertia::zero(arena);
+            point = self.before(last, point);
+            last = before;
+        }
+        let body = &mut bodies[last];
+        let square = point.dot(point);
+        let mass = if square.is_zero() {
+            body.mass
+        } else {
+            body.first.dot(point) * (Number::ONE / square.as_number()?)
+        };
+        if mass.is_zero() {
+            return None;
+        }
+        *body = Inertia::point(-mass).moved_onto(body, point);
+        let there = Vector3::constant(arena, *at);
+        Some(Inertia::point(mass).moved_onto(&Inertia::zero(arena), there))
+    }
+
+    /// Moves the part of each body's inertia that its joint does not move onto the body before it. Returned is the part
+    /// that the first joints do not move, in the axes of the leg's base, if the base moves.
+    fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
+        let mut at_base = Inertia::zero(self.arena());
+        for j in (0..bodies.len()).rev() {
+            let [kept, rest] = match self.kind(j) {
+                JointKind::Revolute => bodies[j].split_about_z(),
+                JointKind::Prismatic => bodies[j].split_along_z(),
+                JointKind::Fixed => [bodies[j], Inertia::zero(bodies[j].mass.arena())],
+            };
+            bodies[j] = rest;
+            match self.antecedent(j) {
+                Some(before) => bodies[before] = self.moved_onto(&kept, &bodies[before], j),
+                None if is_on_moving_base => at_base = self.moved_onto(&kept, &at_base, j),
+                None => {}
+            }
+        }
+        at_base
+    }
+}

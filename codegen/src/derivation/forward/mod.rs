@@ -1,0 +1,7 @@
+//! Forward kinematics, in closed form and step by step, and forward dynamics.
+
+pub(crate) mod closed_form;
+pub(crate) mod forward_dynamics;
+pub(crate) mod pose_step;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! Dynamics of the whole robot: columns of identification models, projections of torques, and
+//! inverse dynamics with given parameters.
+
+use crate::cas::{Expr, Number};
+use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
+use crate::derivation::linear_algebra::elimination::{Rows, inverse};
+use crate::derivation::linear_algebra::linear::{apply, product, transposed};
+use crate::derivation::linear_algebra::null_space::null_space;
+use crate::derivation::parameter::BodyParameter;
+use crate::derivation::regressor::Projection;
+use crate::derivation::selection::DynamicsBy;
+use crate::derivation::underivable::Underivable;
+use overact_core::{ActuatorGroup, Columns, Input};
+
+impl<'a> DerivationContext<'a, '_> {
+    /// The parameters of a form's columns.
+    pub(crate) fn chosen(&self, columns: Columns) -> Vec<BodyParameter> {
+        match columns {
+            Columns::Standard => self.selection.standard.clone(),
+            Columns::Base => self.selection.base.clone(),
+        }
+    }
+
+    /// Case 1: the columns of some parameters, projected on the platform, eq. (30).
+    pub(crate) fn on_platform(&mut self, of: &[BodyParameter]) -> Rows<'a> {
+        let projection = self.robot.project_on_platform();
+        self.columns(&projection, of)
+    }
+
+    /// Case 2: the columns of some parameters, projected on the kept actuators, eq. (36).
+    pub(crate) fn on_actuators(&mut self, of: &[BodyParameter]) -> Result<Rows<'a>, Underivable> {
+        let projection = self.kept_projection()?;
+        Ok(self.columns(&projection, of))
+    }
+
+    /// The projection on the kept actuators, whose determinant is guarded.
+    fn kept_projection(&mut self) -> Result<Projection<'a>, Underivable> {
+        let projection = self
+            .robot
+            .project_on_actuators(&self.selection.kept_actuators)?;
+        self.guard_platform(&projection.determinants, ActuatorGroup::Kept);
+        Ok(projection)
+    }
+
+    /// The columns of some parameters: each by itself, or as a combination of others among them.
+    fn columns(&mut self, projection: &Projection<'a>, of: &[BodyParameter]) -> Rows<'a> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let Some(motion) = self.robot.motion(&twist, &acceleration) else {
+            return Vec::new();
+        };
+        self.guards.extend(self.robot.spring_guards());
+        let selection = self.selection;
+        let combination = |p: BodyParameter| {
+            let found = selection.combined.iter().find(|c| c.parameter == p)?;
+            found
+                .of
+                .iter()
+                .all(|(q, _)| of.contains(q))
+                .then_some(found)
+        };
+        let direct = |p: BodyParameter| self.robot.column(&motion, projection, p);
+        let own: Vec<Option<Vec<Expr<'a>>>> = of
+            .iter()
+            .map(|&p| combination(p).is_none().then(|| direct(p)))
+            .collect();
+        let column_of =
+            |p: BodyParameter| of.iter().position(|q| *q == p).and_then(|i| own[i].clone());
+        let columns: Rows<'a> = of
+            .iter()
+            .zip(&own)
+            .map(|(&p, own)| match (own, combination(p)) {
+                (None, Some(combination)) => self
+                    .robot
+                    .combined(combination, &column_of)
+                    .unwrap_or_else(|| direct(p)),
+                (Some(own), _) => own.clone(),
+                (None, None) => direct(p),
+            })
+            .collect();
+        if columns.is_empty() {
+            return vec![Vec::new(); self.robot.mechanism.dof()];
+        }
+        transposed(&columns)
+    }
+
+    /// τ* = J (JᵀJ)⁻¹ Jᵀ τ, eq. (50): what of the torques moves the robot.
+    pub(crate) fn project_torques(&mut self, n: usize) -> Vec<Expr<'a>> {
+        let torques = self.input("torques", n);
+        if n == self.robot.mechanism.dof() {
+            return torques;
+        }
+        let system = self.actuator_system();
+        let inner = self.robot.projected_torques(&torques);
+        system.torques(&inner)
+    }
+
+    /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, with the kept actuators a and the others b.
+    pub(crate) fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+        let torques = self.input("torques", n);
+        let projection = self.kept_projection()?;
+        let kept = &self.selection.kept_actuators;
+        let jacobian = self.robot.inverse_jacobian();
+        let others: Vec<usize> = (0..n).filter(|i| !kept.contains(i)).collect();
+        let rows: Rows<'a> = others.iter().map(|&i| jacobian[i].clone()).collect();
+        let moved = product(&rows, projection.platform_rows());
+        let entry = |k: usize| {
+            others
+                .iter()
+                .zip(&moved)
+                .fold(torques[kept[k]], |sum, (&i, row)| sum + row[k] * torques[i])
+        };
+        Ok(column((0..kept.len()).map(entry).collect()))
+    }
+
+    /// Standard or base parameters and the payload's with their values: an input, or constants where they
+    /// are known. Of base parameters all others are zero, for they are regrouped into these.
+    fn parameter_values(&mut self, of: Columns) -> Vec<(BodyParameter, Expr<'a>)> {
+        let mut all = self.chosen(of);
+        all.extend(&self.selection.payload);
+        if let Some(known) = &self.selection.values {
+            let value = |one: &BodyParameter| known.iter().find(|(parameter, _)| parameter == one);
+            let number = |one: BodyParameter| {
+                let value = value(&one).map_or(0.0, |&(_, value)| value);
+                (one, self.robot.arena.number(Number::float(value)))
+            };
+            return all.into_iter().map(number).collect();
+        }
+        let input = match of {
+            Columns::Standard => Input::Parameters,
+            Columns::Base => Input::BaseParameters,
+        };
+        let values = self.input(input.name(), all.len());
+        let values = all.into_iter().zip(values);
+        values.filter(|(of, _)| self.owner.has(*of)).collect()
+    }
+
+    /// Γ¹ of given parameters.
+    pub(crate) fn projected_dynamics(
+        &mut self,
+        of: Columns,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        self.dynamics_of(of, twist, acceleration, &mut ActuatedJointForces::default())
+    }
+
+    /// Γ¹ of given parameters, without what goes to `actuators`.
+    pub(crate) fn dynamics_of(
+        &mut self,
+        of: Columns,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+        actuators: &mut ActuatedJointForces<'a>,
+    ) -> Vec<Expr<'a>> {
+        let values = self.parameter_values(of);
+        self.guards.extend(self.robot.spring_guards());
+        let Some(motion) = self.robot.motion(twist, acceleration) else {
+            return Vec::new();
+        };
+        if self.selection.dynamics == DynamicsBy::Bodies {
+            let forces = self.robot.summed_forces(&motion, &values, actuators);
+            return forces.unwrap_or_default();
+        }
+        let projection = self.robot.project_on_platform();
+        self.robot
+            .generalised_forces(&motion, &projection, &values, actuators)
+    }
+
+    /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm; J⁻ᵀ Γ¹ where J is square.
+    pub(crate) fn least_norm_torques(&mut self, of: Columns) -> Vec<Expr<'a>> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let mut own = ActuatedJointForces::of(&self.robot);
+        let forces = self.dynamics_of(of, &twist, &acceleration, &mut own);
+        let torques = self.actuator_system().torques(&forces);
+        own.with(torques)
+    }
+
+    /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the torques that move nothing: of the torques p = J_a^-T Γ¹
+    /// on the kept actuators alone, which move the robot, N (c - Nᵀ p) makes those.
+    ///
+    /// # Errors
+    /// See [`DerivationContext::null_space`].
+    pub(crate) fn preloaded_torques(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let forces = self.projected_dynamics(Columns::Standard, &twist, &acceleration);
+        let preload = self.input("preload", n - self.robot.mechanism.dof());
+        let (basis, inverse) = self.basis()?;
+        let moving = apply(&transposed(&inverse), &forces);
+        let kept = &self.selection.kept_actuators;
+        let internal = preload.iter().enumerate().map(|(k, &wanted)| {
+            let along = kept.iter().zip(&moving).map(|(&i, &p)| basis[i][k] * p);
+            wanted - along.sum::<Expr<'a>>()
+        });
+        let internal: Vec<Expr<'a>> = internal.collect();
+        let mut torques = apply(&basis, &internal);
+        for (&i, &p) in kept.iter().zip(&moving) {
+            torques[i] = torques[i] + p;
+        }
+        Ok(column(torques))
+    }
+
+    /// A basis of the torques that move nothing, one column for each redundant actuator.
+    ///
+    /// # Errors
+    /// Kept actuators that never determine the platform's motion.
+    pub(crate) fn null_space(&mut self) -> Result<Rows<'a>, Underivable> {
+        Ok(self.basis()?.0)
+    }
+
+    /// N, and the inverse of the kept actuators' rows of J_p^inv.
+    fn basis(&mut self) -> Result<(Rows<'a>, Rows<'a>), Underivable> {
+        let jacobian = self.robot.inverse_jacobian();
+        let kept = &self.selection.kept_actuators;
+        let rows: Rows<'a> = kept.iter().map(|&i| jacobian[i].clone()).collect();
+        let home = |value: Expr<'a>| self.robot.at_home(value);
+        let inverse = inverse(&rows, &home).ok_or(Underivable::SingularPartition)?;
+        self.guard_platform(&inverse.determinants, ActuatorGroup::Kept);
+        self.robot.name_partition(&inverse, &[], kept);
+        let arena = self.robot.arena;
+        let basis = null_space(arena, &jacobian, kept, &inverse);
+        Ok((basis, inverse.rows))
+    }
+
+    /// M of given parameters, from bodies summed from the tips to the base.
+    pub(crate) fn mass_matrix(&mut self, of: Columns) -> Rows<'a> {
+        let values = self.parameter_values(of);
+        self.robot.masses(&values).unwrap_or_default()
+    }
+}

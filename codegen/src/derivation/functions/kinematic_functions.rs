@@ -1,0 +1,129 @@
+//! Kinematics of the whole robot: positions and rates of joints, and what follows from the
+//! actuators by least squares.
+
+use crate::cas::Expr;
+use crate::derivation::context::DerivationContext;
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::motion_input::MotionInput;
+use crate::derivation::names::coordinate_label;
+use crate::mechanism::{JointIndex, JointKind};
+
+impl<'a> DerivationContext<'a, '_> {
+    /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
+    /// that fit the actuators' rates best.
+    pub(crate) fn twist(&mut self) -> Vec<Expr<'a>> {
+        let tree = self.robot.mechanism.is_tree();
+        if self.from == MotionInput::Actuators {
+            let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
+            self.twist = self.least_squares(&rates);
+            self.name_coordinates(&self.twist, "");
+            return self.twist.clone();
+        }
+        self.input(
+            if tree { "joint_velocities" } else { "twist" },
+            self.robot.mechanism.dof(),
+        )
+    }
+
+    /// The independent accelerations, an input or those that fit the actuators' accelerations best.
+    pub(crate) fn acceleration(&mut self) -> Vec<Expr<'a>> {
+        let tree = self.robot.mechanism.is_tree();
+        if self.from == MotionInput::Actuators {
+            let twist = self.twist.clone();
+            let acceleration = self.acceleration_of(&twist);
+            self.name_coordinates(&acceleration, "d");
+            return acceleration;
+        }
+        self.input(
+            if tree {
+                "joint_accelerations"
+            } else {
+                "acceleration"
+            },
+            self.robot.mechanism.dof(),
+        )
+    }
+
+    /// Names independent velocities or accelerations that are no inputs.
+    fn name_coordinates(&self, values: &[Expr<'a>], prefix: &str) {
+        for (coordinate, value) in self.robot.twist.iter().zip(values) {
+            let _ = value.named(&format!("{prefix}{}", coordinate_label(coordinate)));
+        }
+    }
+
+    /// Positions of all joints, within half a turn of the home configuration.
+    pub(crate) fn joint_positions(&mut self) -> Vec<Expr<'a>> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let configuration = &self.robot.configuration;
+        let position = |(index, of): (usize, &JointIndex)| {
+            if mechanism.is_tree() || configuration.from() == MotionInput::Joints {
+                return arena.input("joints", index);
+            }
+            if let Some(position) = configuration.in_pose(index) {
+                return position;
+            }
+            if mechanism.joint(*of).kind == JointKind::Prismatic {
+                return configuration
+                    .joint_position(index)
+                    .unwrap_or_else(|| arena.zero());
+            }
+            let home = mechanism.home.joints[index];
+            match configuration.unit(&configuration.joint_angle(index)) {
+                Some(unit) => unit.angle_near(arena, home),
+                None => arena.zero(),
+            }
+        };
+        mechanism
+            .joints()
+            .iter()
+            .enumerate()
+            .map(position)
+            .collect()
+    }
+
+    /// Positions of the actuated joints.
+    pub(crate) fn actuator_positions(&mut self) -> Vec<Expr<'a>> {
+        let all = self.joint_positions();
+        let actuated = self.robot.mechanism.actuated();
+        actuated.iter().map(|&i| all[i]).collect()
+    }
+
+    /// (J_p^inv)^+, which is J_p where there are as many actuators as coordinates.
+    pub(crate) fn pseudo_inverse(&mut self) -> Rows<'a> {
+        self.actuator_system().pseudo_inverse()
+    }
+
+    /// The v that fits J_p^inv v to the actuators' rates best.
+    pub(crate) fn least_squares(&mut self, rates: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        self.actuator_system().velocities(rates)
+    }
+
+    /// v̇ of least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.
+    pub(crate) fn acceleration_of(&mut self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let actuated = self.robot.mechanism.actuated();
+        let measured = self.input("actuator_accelerations", actuated.len());
+        let still = self.zeros();
+        let bias = self.joint_motion(twist, &still).1;
+        let rest: Vec<Expr<'a>> = measured
+            .iter()
+            .zip(&actuated)
+            .map(|(m, &i)| *m - bias[i])
+            .collect();
+        self.least_squares(&rest)
+    }
+
+    /// Velocities and accelerations of all joints.
+    pub(crate) fn joint_motion(
+        &mut self,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
+        match self.robot.motion(twist, acceleration) {
+            Some(motion) => (
+                self.robot.joint_values(&motion.u),
+                self.robot.joint_values(&motion.u_dot),
+            ),
+            None => (Vec::new(), Vec::new()),
+        }
+    }
+}

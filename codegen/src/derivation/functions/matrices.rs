@@ -1,0 +1,128 @@
+//! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
+
+use crate::cas::Expr;
+use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::kinematics::frames::independent_columns;
+use crate::derivation::linear_algebra::elimination::{Rows, inverse};
+use crate::derivation::robot::constraints::placement_error;
+
+impl<'a> DerivationContext<'a, '_> {
+    /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
+    pub(crate) fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let joints = mechanism.joints();
+        let jacobian = self.robot.inverse_jacobian();
+        let actuated = mechanism.actuated();
+        let n = actuated.len();
+        let scale = |k: usize| {
+            let leg = joints[actuated[k]].leg;
+            let closure = self.robot.legs[leg].closure.as_ref();
+            if mechanism.is_parasitic() {
+                self.determinant(leg).unwrap_or_else(|| arena.one())
+            } else {
+                closure.map_or_else(|| arena.one(), |c| c.determinant)
+            }
+        };
+        let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
+        let platform = (0..n)
+            .map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect())
+            .collect();
+        let diagonal = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
+        let actuators = (0..n)
+            .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
+            .collect();
+        (platform, actuators)
+    }
+
+    /// The determinant of a leg's rows of J_k, where those that the leg is solved from are in other axes.
+    fn determinant(&self, index: usize) -> Option<Expr<'a>> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let frames = self.robot.base_frames(index)?;
+        let columns = independent_columns(arena, &mechanism.legs[index], &frames);
+        let rows = mechanism.closure_rows(index).into_iter();
+        let entry = |row: usize| columns.iter().map(|c| c.component(row)).collect();
+        let matrix: Rows<'a> = rows.map(entry).collect();
+        let home = |value: Expr<'a>| self.robot.at_home(value);
+        Some(inverse(&matrix, &home)?.determinant)
+    }
+
+    /// By how much the legs' ends miss the platform, in the rows of J_k: positions (m), and half the
+    /// axial vector of the rotation that is left (rad for small ones).
+    pub(crate) fn closure_error(&mut self) -> Rows<'a> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let mut errors = Vec::new();
+        for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
+            let (Some(closure), Some(platform)) = (&state.closure, self.robot.end_of(index)) else {
+                // The joints of legs without an end are the pose.
+                let places = mechanism
+                    .coordinate_range(index)
+                    .zip(mechanism.leg_range(index));
+                errors.extend(places.map(|(in_pose, in_joints)| {
+                    arena.input("pose", in_pose) - arena.input("joints", in_joints)
+                }));
+                continue;
+            };
+            let frames = self.robot.base_frames(index);
+            let arm = platform.arm(closure.at);
+            let error = frames.and_then(|frames| placement_error(&platform, arm, leg, &frames));
+            let Some(error) = error else {
+                continue;
+            };
+            let rows = mechanism.closure_rows(index).into_iter();
+            errors.extend(rows.map(|row| error.component(row)));
+        }
+        column(errors)
+    }
+
+    /// D, of a platform with parasitic motion.
+    pub(crate) fn platform_jacobian(&mut self) -> Rows<'a> {
+        let parasitic = self.robot.parasitic_motion.as_ref();
+        parasitic.map_or_else(Vec::new, |parasitic| {
+            parasitic.platform_jacobian(self.robot.arena)
+        })
+    }
+
+    /// By how much a pose misses what the legs allow.
+    pub(crate) fn blocked_error(&mut self) -> Rows<'a> {
+        let errors = self.robot.blocked_errors().into_iter();
+        column(errors.map(|(error, _)| error).collect())
+    }
+
+    /// A of A t = 0.
+    pub(crate) fn blocked_jacobian(&mut self) -> Rows<'a> {
+        let parasitic = self.robot.parasitic_motion.as_ref();
+        parasitic.map_or_else(Vec::new, |parasitic| parasitic.matrix.clone())
+    }
+
+    /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.
+    pub(crate) fn leg_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let total = mechanism.joints().len();
+        let (mut legs, mut platform) = (Vec::new(), Vec::new());
+        for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
+            let ends = state.closure.as_ref().zip(self.robot.end_of(index));
+            let (Some((closure, end)), Some(frames)) = (ends, self.robot.base_frames(index)) else {
+                // The rates of joints of legs without an end are independent ones.
+                let own = mechanism.leg_range(index).len();
+                for (i, row) in state.rows[..own].iter().enumerate() {
+                    let mut entries = vec![arena.zero(); total];
+                    entries[state.first_joint + i] = arena.one();
+                    legs.push(entries);
+                    platform.push(row.clone());
+                }
+                continue;
+            };
+            let columns = independent_columns(arena, leg, &frames);
+            for row in mechanism.closure_rows(index) {
+                let mut entries = vec![arena.zero(); total];
+                for (k, column) in columns.iter().enumerate() {
+                    entries[state.first_joint + k] = column.component(row);
+                }
+                legs.push(entries);
+                let own = end.row(closure.at, row);
+                platform.push(self.robot.on_independent(own));
+            }
+        }
+        (legs, platform)
+    }
+}

@@ -1,0 +1,226 @@
+//! The functions that every robot has, as named inputs and output expressions.
+
+mod actuators;
+mod divisors;
+mod dynamic_functions;
+pub(crate) mod inventory;
+mod kinematic_functions;
+mod matrices;
+pub(crate) mod sums;
+
+use crate::cas::{Arena, Expr};
+use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::forward::closed_form::closed_form;
+use crate::derivation::function_form::FunctionForm;
+use crate::derivation::guard::{Guard, GuardKind};
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::motion_input::MotionInput;
+use crate::derivation::selection::{JointsBy, Selection};
+use crate::derivation::underivable::Underivable;
+use crate::mechanism::Mechanism;
+use overact_core::Function;
+
+/// A function as expressions.
+#[derive(Debug)]
+pub struct Derived<'a> {
+    /// Names and lengths of the inputs.
+    pub inputs: Vec<(&'static str, usize)>,
+    /// Rows and columns of the output; one column for a vector.
+    pub shape: (usize, usize),
+    /// The output, row-major.
+    pub entries: Vec<Expr<'a>>,
+    /// Conditions for the output to have a value.
+    pub guards: Vec<Guard<'a>>,
+    /// Conditions on all that the output divides by.
+    pub divisors: Vec<Guard<'a>>,
+}
+
+impl Derived<'_> {
+    /// The columns that are not identically zero.
+    #[must_use]
+    pub(crate) fn present_columns(&self) -> Vec<usize> {
+        let (rows, columns) = self.shape;
+        let is_present = |&c: &usize| (0..rows).any(|r| !self.entries[r * columns + c].is_zero());
+        (0..columns).filter(is_present).collect()
+    }
+
+    /// Leaves out all columns but some.
+    pub(crate) fn keep_columns(&mut self, kept: &[usize]) {
+        let (rows, columns) = self.shape;
+        let row = |r: usize| kept.iter().map(move |c| r * columns + c);
+        let entries = (0..rows).flat_map(row).map(|at| self.entries[at]);
+        self.entries = entries.collect();
+        self.shape = (rows, kept.len());
+    }
+}
+
+/// Derives a function in its own graph.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn derive<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+    selection: &Selection,
+    function: Function,
+    from: MotionInput,
+) -> Result<Derived<'a>, Underivable> {
+    let derived = if function == Function::PoseInClosedForm {
+        pose_in_closed_form(arena, mechanism)?
+    } else {
+        let form = FunctionForm { function, from };
+        derive_with(arena, mechanism, selection, form, |context| {
+            context.rows(function)
+        })?
+    };
+    with_divisors(arena, mechanism, derived)
+}
+
+/// Guards what the output divides by.
+pub(crate) fn with_divisors<'a>(
+    arena: &'a Arena,
+    mechanism: &Mechanism,
+    mut derived: Derived<'a>,
+) -> Result<Derived<'a>, Underivable> {
+    // Conditions on the pose are computed for themselves, and may divide by more than the output does.
+    let of_pose = derived.guards.iter();
+    let of_pose = of_pose.filter(|guard| matches!(guard.kind, GuardKind::Closed(_)));
+    let mut computed = derived.entries.clone();
+    computed.extend(of_pose.map(|guard| guard.value));
+    derived.divisors = divisors::conditions(arena, mechanism, &computed, &derived.guards);
+    let singular = |guard: &&Guard<'_>| guard.kind.home().is_some_and(|home| !home.is_finite());
+    let mut guards = derived.guards.iter().chain(&derived.divisors);
+    match guards.find(singular) {
+        Some(guard) => Err(Underivable::SingularHome {
+            leg: guard.leg.clone(),
+        }),
+        None => Ok(derived),
+    }
+}
+
+/// A function of the configuration, or what `rows` make of it.
+pub(crate) fn derive_with<'a, 's>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+    selection: &'s Selection,
+    form: FunctionForm,
+    rows: impl FnOnce(&mut DerivationContext<'a, 's>) -> Result<Rows<'a>, Underivable>,
+) -> Result<Derived<'a>, Underivable> {
+    let FunctionForm { function, from } = form;
+    // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
+    let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
+    let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
+    let still = if brings_back || closes {
+        &[][..]
+    } else {
+        &mechanism.still
+    };
+    let mut context = DerivationContext::new(arena, mechanism, selection, from, still)?;
+    let rows = rows(&mut context)?;
+    context.robot.give_names();
+    let shape = (rows.len(), rows.first().map_or(0, Vec::len));
+    let mut guards = context.robot.guards.clone();
+    guards.extend(context.guards);
+    // Where Newton's method finds the joints, functions from the pose call those from the joints.
+    let is_of_pose = match selection.joints {
+        JointsBy::Newton => from != MotionInput::Actuators,
+        JointsBy::Rule => from == MotionInput::Pose,
+    };
+    // What is at zero otherwise misses more there than anything that follows from it.
+    if from != MotionInput::Actuators {
+        guards.extend(context.robot.still_guards(still));
+    }
+    if is_of_pose && !brings_back && !closes {
+        guards.extend(context.robot.closed_guards());
+    }
+    if brings_back {
+        guards.retain(|guard| !matches!(guard.kind, GuardKind::Coordinates(_)));
+    }
+    Ok(Derived {
+        inputs: context.inputs,
+        shape,
+        entries: rows.concat(),
+        guards,
+        divisors: Vec::new(),
+    })
+}
+
+/// Forward kinematics by rule.
+fn pose_in_closed_form<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+) -> Result<Derived<'a>, Underivable> {
+    let found = closed_form(arena, mechanism).ok_or(Underivable::ForwardKinematics)?;
+    let guards = found.reach.into_iter().map(|(reach, leg)| Guard {
+        value: reach.radicand,
+        kind: GuardKind::Reach,
+        leg,
+    });
+    Ok(Derived {
+        inputs: vec![("actuators", mechanism.actuated().len())],
+        shape: (found.pose.len(), 1),
+        entries: found.pose,
+        guards: guards.collect(),
+        divisors: Vec::new(),
+    })
+}
+
+impl<'a> DerivationContext<'a, '_> {
+    /// What each function is made of, row by row.
+    fn rows(&mut self, function: Function) -> Result<Rows<'a>, Underivable> {
+        let n = self.robot.mechanism.actuated().len();
+        Ok(match function {
+            Function::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
+            Function::Joints => column(self.joint_positions()),
+            Function::ActuatorPositions => column(self.actuator_positions()),
+            Function::PoseStep => column(self.pose_step()),
+            Function::InverseJacobian => self.robot.inverse_jacobian(),
+            Function::Jacobian => self.pseudo_inverse(),
+            Function::ClosurePlatformJacobian => self.closure_matrices().0,
+            Function::ClosureActuatorJacobian => self.closure_matrices().1,
+            Function::LegsJacobian => self.leg_matrices().0,
+            Function::LegsPlatformJacobian => self.leg_matrices().1,
+            Function::ClosureError => self.closure_error(),
+            Function::PlatformJacobian => self.platform_jacobian(),
+            Function::BlockedError => self.blocked_error(),
+            Function::BlockedJacobian => self.blocked_jacobian(),
+            Function::JointVelocities => {
+                let twist = self.twist();
+                let still = self.zeros();
+                column(self.joint_motion(&twist, &still).0)
+            }
+            Function::JointAccelerations => {
+                let (twist, acceleration) = (self.twist(), self.acceleration());
+                column(self.joint_motion(&twist, &acceleration).1)
+            }
+            Function::TwistFromActuators => {
+                let rates = self.input("actuator_velocities", n);
+                column(self.least_squares(&rates))
+            }
+            Function::AccelerationFromActuators => {
+                let twist = self.twist();
+                column(self.acceleration_of(&twist))
+            }
+            Function::IdmRedPlatform(columns) => self.on_platform(&self.chosen(columns)),
+            Function::IdmRedActuators(columns) => self.on_actuators(&self.chosen(columns))?,
+            Function::IdmRedPayload => self.on_platform(&self.selection.payload),
+            Function::IdmRedPayloadActuators => self.on_actuators(&self.selection.payload)?,
+            Function::ProjectPlatform => {
+                let torques = self.input("torques", n);
+                column(self.robot.projected_torques(&torques))
+            }
+            Function::ProjectActuators => self.project_actuators(n)?,
+            Function::InverseDynamics(of) => column(self.least_norm_torques(of)),
+            Function::InverseDynamicsPreloaded => self.preloaded_torques(n)?,
+            Function::MassMatrix(of) => self.mass_matrix(of),
+            Function::Bias(of) => {
+                let twist = self.twist();
+                let still = self.zeros();
+                column(self.projected_dynamics(of, &twist, &still))
+            }
+            Function::ForwardDynamics(of) => column(self.forward_dynamics(of, n)),
+            Function::ProjectTorques => column(self.project_torques(n)),
+            Function::NullSpace => self.null_space()?,
+        })
+    }
+}

@@ -1,0 +1,234 @@
+//! Orientations as products of turns about z and constant tilts, so that the orientation of one frame
+//! in another is multiplied out between the two alone, wherever the legs start.
+
+use super::configuration::Configuration;
+use super::joint::joint_turn;
+use super::rates::parallel;
+use crate::cas::{Angle, Arena, CosineSine, Direction, Matrix3, Ratio};
+use crate::derivation::motion_input::MotionInput;
+use crate::mechanism::{Leg, Mechanism};
+
+mod right;
+
+/// A factor of an orientation.
+#[derive(Debug, Clone, PartialEq)]
+enum Part {
+    /// Rz(rz) Ry(ry) Rx(rx) of constant angles.
+    Tilt([Angle; 3]),
+    /// A turn about z, of all joints of a run of parallel axes.
+    Turn(Direction),
+}
+
+/// A frame's orientation in the robot's base frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Orientation(Vec<Part>);
+
+impl Orientation {
+    /// The orientations of all frames of a leg; `None` if a constant overflows.
+    #[must_use]
+    pub fn of_leg(
+        leg: &Leg,
+        first_joint: usize,
+        configuration: &Configuration<'_>,
+    ) -> Option<Vec<Self>> {
+        let mut all: Vec<Self> = Vec::new();
+        for (index, joint) in leg.joints.iter().enumerate() {
+            let mut parts = match joint.antecedent {
+                Some(a) => all[a].0.clone(),
+                None => Self::fixed(leg.base.rotation).0,
+            };
+            let from = match parts.pop_if(|part| matches!(part, Part::Turn(_))) {
+                Some(Part::Turn(turn)) => turn,
+                _ => Direction::constant(Angle::ZERO),
+            };
+            let turned = from.plus(&Direction::constant(joint.gamma))?;
+            let theta = joint_turn(leg, index, first_joint, configuration)?;
+            let tilt = Part::Tilt([joint.alpha, Angle::ZERO, Angle::ZERO]);
+            match parallel(joint.alpha) {
+                Some(sign) if sign == Ratio::ONE => parts.push(Part::Turn(turned.plus(&theta)?)),
+                Some(_) => {
+                    parts.extend([tilt, Part::Turn(turned.negative().plus(&theta)?)]);
+                }
+                None => parts.extend([Part::Turn(turned), tilt, Part::Turn(theta)]),
+            }
+            all.push(Self(parts));
+        }
+        Some(all)
+    }
+
+    /// The orientation of a frame that has the orientation `next` in this one; `None` if a constant
+    /// overflows.
+    #[must_use]
+    pub(crate) fn followed_by(&self, next: &Self) -> Option<Self> {
+        let mut parts = self.0.clone();
+        let mut rest = next.0.as_slice();
+        if let (Some(Part::Turn(last)), [Part::Turn(first), others @ ..]) = (parts.last_mut(), rest)
+        {
+            *last = last.plus(first)?;
+            rest = others;
+        }
+        parts.extend_from_slice(rest);
+        Some(Self(right::merged(&parts)?))
+    }
+
+    /// A constant orientation, as that of a leg's base.
+    #[must_use]
+    pub fn fixed(rotation: [Angle; 3]) -> Self {
+        let is_turned = rotation.iter().any(|angle| !angle.is_zero());
+        Self(
+            is_turned
+                .then_some(Part::Tilt(rotation))
+                .into_iter()
+                .collect(),
+        )
+    }
+
+    /// All frames on the paths from the base to a leg's frames, the base frame first.
+    #[must_use]
+    pub(crate) fn intermediate_frames(frames: &[Self]) -> Vec<Self> {
+        let mut frames_on_path: Vec<Self> = Vec::new();
+        for frame in frames {
+            for length in 0..=frame.0.len() {
+                let prefix = Self(frame.0[..length].to_vec());
+                if !frames_on_path.contains(&prefix) {
+                    frames_on_path.push(prefix);
+                }
+            }
+        }
+        frames_on_path
+    }
+
+    /// The orientation of `self` in the frame `from`; `None` if a sine or cosine does not follow from
+    /// the configuration.
+    #[must_use]
+    pub fn relative<'a>(
+        &self,
+        from: &Self,
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Matrix3<'a>> {
+        let shared = self.0.iter().zip(&from.0).take_while(|(a, b)| a == b);
+        let shared = shared.count();
+        let (mut forth, mut back) = (&self.0[shared..], &from.0[shared..]);
+        let mut middle = Matrix3::identity(arena);
+        if let ([Part::Turn(to), rest @ ..], [Part::Turn(of), others @ ..]) = (forth, back) {
+            let turn = to.plus(&of.negative())?;
+            middle = Part::Turn(turn).matrix(arena, configuration)?;
+            (forth, back) = (rest, others);
+        }
+        let product = |start: Matrix3<'a>, parts: &[Part]| {
+            parts.iter().try_fold(start, |product, part| {
+                Some(product * part.matrix(arena, configuration)?)
+            })
+        };
+        let back = product(Matrix3::identity(arena), back)?.transposed();
+        product(back * middle, forth)
+    }
+}
+
+/// The axes in which a chain's closure sees the body at its end, if they are not those of the body at its start.
+/// Orientations are those in the robot's base frame.
+#[derive(Debug)]
+pub(crate) struct ObserverFrame {
+    /// Of the body that the chain starts from.
+    pub(crate) from: Orientation,
+    /// Of the axes.
+    pub(crate) axes: Orientation,
+}
+
+/// The numbers of the frames in whose axes a leg's closure may be written. The base alone, if the closure uses only
+/// some components of a velocity and other axes would mix them with the rest.
+#[must_use]
+pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
+    let arena = Arena::new();
+    let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
+    let first_joint = mechanism.leg_range(leg).start;
+    Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
+        .map(|frames| Orientation::intermediate_frames(&frames))
+        .filter(|axes| keep_rows(mechanism, leg, &arena, &configuration, axes))
+        .map_or(vec![0], |axes| distinct(&axes, &arena, &configuration))
+}
+
+/// The numbers of those of some axes that are not others of them with names and signs of their axes exchanged,
+/// which cost the same.
+pub(crate) fn distinct<'a>(
+    axes: &[Orientation],
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+) -> Vec<usize> {
+    let mut own: Vec<usize> = Vec::new();
+    for (at, one) in axes.iter().enumerate() {
+        let is_known = own.iter().any(|&other| {
+            let turn = one.relative(&axes[other], arena, configuration);
+            turn.is_some_and(|turn| turn.exchanges())
+        });
+        if !is_known {
+            own.push(at);
+        }
+    }
+    own
+}
+
+/// Whether a leg's closure uses all three components of each velocity or none, so that it may be written in any axes.
+pub(crate) fn may_use_any_axes(mechanism: &Mechanism, leg: usize) -> bool {
+    let rows = mechanism.closure_rows(leg);
+    [0, 1].iter().all(|&part| {
+        let count = rows.iter().filter(|&&row| row / 3 == part).count();
+        count == 0 || count == 3
+    })
+}
+
+/// Whether a leg's closure is of the same components in all of some axes: it is of all three of a velocity or of
+/// none, or the axes turn about what is left out. The first axes are those of the components.
+pub(crate) fn keep_rows<'a>(
+    mechanism: &Mechanism,
+    leg: usize,
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+    axes: &[Orientation],
+) -> bool {
+    let rows = if mechanism.is_parasitic() {
+        // Which of the shared components determine the joints is chosen in the axes themselves.
+        mechanism.legs[leg].shared_components()
+    } else {
+        mechanism.closure_rows(leg)
+    };
+    let parts = [0, 1].map(|part| {
+        let own = rows.iter().filter(|&&row| row / 3 == part);
+        own.map(|row| row % 3).collect::<Vec<_>>()
+    });
+    let parts = || parts.iter().filter(|part| ![0, 3].contains(&part.len()));
+    let Some(first) = axes.first().filter(|_| parts().next().is_some()) else {
+        return true;
+    };
+    axes.iter().all(|other| {
+        let turn = other.relative(first, arena, configuration);
+        turn.is_some_and(|turn| parts().all(|part| turn.keeps(part)))
+    })
+}
+
+impl Part {
+    fn matrix<'a>(
+        &self,
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Matrix3<'a>> {
+        match self {
+            Self::Tilt(angles) => Some(constant_rotation(arena, *angles)),
+            Self::Turn(turn) => {
+                let CosineSine { cosine, sine } = configuration.unit(turn)?;
+                Some(Matrix3::rotation(2, cosine, sine))
+            }
+        }
+    }
+}
+
+/// Rz(rz) Ry(ry) Rx(rx) of constant angles.
+#[must_use]
+pub(crate) fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
+    let about = |axis: usize| {
+        let (cosine, sine) = rotation[axis].cosine_and_sine();
+        Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))
+    };
+    about(2) * about(1) * about(0)
+}

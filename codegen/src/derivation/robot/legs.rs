@@ -1,0 +1,259 @@
+//! The legs of a robot, derived one after the other: the joints from what a leg ends on, the axes in which the closure
+//! is seen, and the closure itself.
+
+use super::{Robot, name_rows};
+use crate::cas::{Expr, Vector3};
+use crate::derivation::closure::leg::{GroundAcceleration, LegGravity, LegState};
+use crate::derivation::closure::leg_closure::{ClosureRows, LegClosure, split_rows};
+use crate::derivation::guard::{Guard, GuardKind};
+use crate::derivation::kinematics::centres::centres;
+use crate::derivation::kinematics::frames::LegFrames;
+use crate::derivation::kinematics::inverse_kinematics::{Task, solve_leg};
+use crate::derivation::kinematics::orientation::{ObserverFrame, Orientation};
+use crate::derivation::kinematics::path::{Known, Path, observer_frames, orientation};
+use crate::derivation::kinematics::platform::PlatformPose;
+use crate::derivation::kinematics::rates::Rates;
+use crate::derivation::motion_input::MotionInput;
+use crate::derivation::selection::Formulation;
+use crate::derivation::underivable::Underivable;
+use crate::mechanism::Leg;
+
+impl<'a> Robot<'a> {
+    /// Derives a leg and what it knows of the robot; those before it are derived.
+    ///
+    /// # Errors
+    /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
+    pub(crate) fn derive_leg(
+        &mut self,
+        index: usize,
+        formulation: &Formulation,
+    ) -> Result<(), Underivable> {
+        let (arena, mechanism) = (self.arena, self.mechanism);
+        let leg = &mechanism.legs[index];
+        arena.enter(&leg.name);
+        let first_joint = mechanism.leg_range(index).start;
+        let platform = self.end_of(index);
+        if let Some(platform) = &platform {
+            self.solve_joints(index, platform)?;
+        }
+        let observer = self.observer_frame_of(index, formulation);
+        let platform = match &observer {
+            Some(observer) => self.end_seen(index, &observer.axes),
+            None => platform,
+        };
+        let observer = observer.as_ref();
+        let frames = self.frames_of(index, observer, formulation)?;
+        let rates = Rates::new(leg, platform.is_some());
+        let gravity = self.gravity_of(leg, &frames, observer, formulation);
+        let centres = if formulation.meeting {
+            centres(leg, &rates)
+        } else {
+            Vec::new()
+        };
+        let closure = match &platform {
+            Some(platform) => Some(self.close(index, &frames, &rates, platform)?),
+            None => None,
+        };
+        let mut rows = match &closure {
+            Some(closure) => closure.reduced_jacobian(),
+            None => self.identity_rows(mechanism.coordinate_range(index)),
+        };
+        if let Some(closure) = &closure {
+            self.guard_leg(closure, &leg.name);
+        }
+        if !mechanism.is_parasitic() {
+            name_rows(&rows, leg, &self.twist);
+        }
+        if let Some(carrier) = leg.base_body {
+            rows.extend(self.legs[carrier.leg].rows.clone());
+        }
+        self.legs.push(LegState {
+            first_joint,
+            frames,
+            rates,
+            centres,
+            platform,
+            closure,
+            gravity,
+            rows,
+        });
+        arena.enter("");
+        Ok(())
+    }
+
+    /// Finds the sines and cosines of a leg's joints from the pose of what it ends on, where the configuration is
+    /// one.
+    fn solve_joints(
+        &mut self,
+        index: usize,
+        platform: &PlatformPose<'a>,
+    ) -> Result<(), Underivable> {
+        if self.configuration.from() == MotionInput::Joints {
+            return Ok(());
+        }
+        let leg = &self.mechanism.legs[index].name;
+        let unsolved = || Underivable::InverseKinematics { leg: leg.clone() };
+        let task = Task::new(self.arena, self.mechanism, index, platform).ok_or_else(unsolved)?;
+        let conditions = solve_leg(task, &mut self.configuration).ok_or_else(unsolved)?;
+        let guards = conditions.into_iter().map(|reach| Guard {
+            value: reach.radicand,
+            kind: GuardKind::Reach,
+            leg: leg.clone(),
+        });
+        self.guards.extend(guards);
+        Ok(())
+    }
+
+    /// The frames of a leg in the axes of its closure; first those in which the closure is seen, where sums over
+    /// divisors are looked for.
+    fn frames_of(
+        &self,
+        index: usize,
+        observer: Option<&ObserverFrame>,
+        formulation: &Formulation,
+    ) -> Result<LegFrames<'a>, Underivable> {
+        let (arena, configuration) = (self.arena, &self.configuration);
+        let leg = &self.mechanism.legs[index];
+        let first_joint = self.mechanism.leg_range(index).start;
+        if let Some(observer) = observer.filter(|_| formulation.over_divisors) {
+            let _ = LegFrames::express_in_observer_frame(
+                arena,
+                leg,
+                first_joint,
+                configuration,
+                observer,
+            );
+        }
+        let closure_frame = formulation
+            .closure_frames
+            .get(index)
+            .copied()
+            .unwrap_or_default();
+        let frames = LegFrames::new(
+            arena,
+            leg,
+            first_joint,
+            configuration,
+            closure_frame,
+            observer,
+        );
+        frames.ok_or_else(|| Underivable::InverseKinematics {
+            leg: leg.name.clone(),
+        })
+    }
+
+    /// Gravity as an acceleration of the ground, for a leg that stands on it.
+    fn gravity_of(
+        &self,
+        leg: &Leg,
+        frames: &LegFrames<'a>,
+        observer: Option<&ObserverFrame>,
+        formulation: &Formulation,
+    ) -> LegGravity<'a> {
+        if leg.base_body.is_some() {
+            return LegGravity::default();
+        }
+        let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let in_axes = |axes: &Orientation| {
+            let turn = Orientation::default().relative(axes, self.arena, &self.configuration)?;
+            Some(-(turn * gravity))
+        };
+        let observer_of_ground = observer.filter(|_| formulation.gravity_as_acceleration);
+        let ground = observer_of_ground.and_then(|observer| {
+            Some(GroundAcceleration {
+                in_observer_axes: in_axes(&observer.axes)?,
+                in_leg_axes: in_axes(&frames.orientation)?,
+            })
+        });
+        let end_offset = match observer {
+            _ if !formulation.masses_at_ends => None,
+            Some(observer) => in_axes(&observer.axes),
+            None => Some(-gravity),
+        };
+        LegGravity { ground, end_offset }
+    }
+
+    /// The closure of a leg on what it ends on.
+    fn close(
+        &self,
+        index: usize,
+        frames: &LegFrames<'a>,
+        rates: &Rates,
+        platform: &PlatformPose<'a>,
+    ) -> Result<LegClosure<'a>, Underivable> {
+        let (arena, mechanism) = (self.arena, self.mechanism);
+        let leg = &mechanism.legs[index];
+        let home = |e: Expr<'a>| self.at_home(e);
+        let rows = if mechanism.is_parasitic() {
+            split_rows(arena, leg, frames, rates, &home)
+        } else {
+            ClosureRows {
+                independent: mechanism.closure_rows(index),
+                remaining: Vec::new(),
+            }
+        };
+        let closure = LegClosure::new(arena, leg, frames, rates, platform, &rows, &home);
+        closure.ok_or_else(|| Underivable::SingularLeg {
+            leg: leg.name.clone(),
+        })
+    }
+
+    /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
+    pub(crate) fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
+        if let Some(platform) = &self.platform {
+            return Some(platform.clone());
+        }
+        let from = self.mechanism.legs[index].base_body;
+        let axes = orientation(self.mechanism, &self.configuration, from)?;
+        self.end_seen(index, &axes)
+    }
+
+    /// The axes in which a chain's closure is seen, where they are chosen.
+    fn observer_frame_of(&self, index: usize, formulation: &Formulation) -> Option<ObserverFrame> {
+        let observer_frame = formulation
+            .observer_frames
+            .get(index)
+            .copied()
+            .unwrap_or_default();
+        if observer_frame == 0 {
+            return None;
+        }
+        let all = observer_frames(self.mechanism, &self.configuration, index)?;
+        Some(ObserverFrame {
+            from: all.first()?.clone(),
+            axes: all.get(observer_frame)?.clone(),
+        })
+    }
+
+    /// What a chain ends on, as it is seen from the body that it starts from, in given axes.
+    fn end_seen(&self, index: usize, axes: &Orientation) -> Option<PlatformPose<'a>> {
+        let leg = &self.mechanism.legs[index];
+        leg.end.as_ref()?;
+        let legs = self.legs.iter();
+        let known = Known {
+            arena: self.arena,
+            mechanism: self.mechanism,
+            configuration: &self.configuration,
+            legs: legs
+                .map(|own| (own.first_joint, &own.rates, &own.rows))
+                .collect(),
+        };
+        let path = Path::new(&known, leg.base_body, leg.end_body?, axes)?;
+        Some(PlatformPose::on_body(self.arena, path))
+    }
+
+    fn guard_leg(&mut self, closure: &LegClosure<'a>, leg: &str) {
+        for determinant in &closure.determinants {
+            let (_, base) = determinant.factor_and_base();
+            let known = self.guards.iter().any(|g| g.value == base);
+            if !known && base.as_number().is_none() {
+                let kind = GuardKind::Leg(self.at_home(base).abs());
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: leg.to_owned(),
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! The derivation of one robot in one graph: configuration, closures, motion, and what every
+//! function is made of.
+
+pub(crate) mod constraints;
+pub(crate) mod derivable;
+mod legs;
+mod naming;
+
+use crate::cas::{Arena, Expr, Vector3};
+use crate::derivation::bodies::body::{LegRates, leg_base, leg_bodies};
+use crate::derivation::bodies::motion::{Moved, RobotMotion};
+use crate::derivation::bodies::platform_body::{Mount, PlatformBody};
+use crate::derivation::closure::leg::LegState;
+use crate::derivation::closure::leg_closure::LegClosure;
+use crate::derivation::closure::parasitic_motion::ParasiticMotion;
+use crate::derivation::guard::Guard;
+use crate::derivation::kinematics::configuration::Configuration;
+use crate::derivation::kinematics::frames::LegFrames;
+use crate::derivation::kinematics::platform::{PlatformMotion, PlatformPose};
+use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::linear_algebra::linear::apply;
+use crate::derivation::motion_input::MotionInput;
+use crate::derivation::names::{Accelerations, coordinate_label, joined};
+use crate::derivation::selection::Formulation;
+use crate::derivation::underivable::Underivable;
+use crate::mechanism::{Mechanism, TwistCoordinate};
+use std::cell::RefCell;
+
+/// The derivation of a robot.
+#[derive(Debug)]
+pub struct Robot<'a> {
+    /// The graph.
+    pub arena: &'a Arena,
+    /// The robot.
+    pub mechanism: &'a Mechanism,
+    /// Sines and cosines.
+    pub configuration: Configuration<'a>,
+    /// The platform's pose; `None` for a tree and for a skeleton with chains.
+    pub platform: Option<PlatformPose<'a>>,
+    /// The independent twist coordinates.
+    pub twist: Vec<TwistCoordinate>,
+    /// The components of the platform's velocity in the directions of its pose: the independent ones, or all
+    /// six of a platform with parasitic motion.
+    pub(crate) free: Vec<TwistCoordinate>,
+    /// How these follow from the independent ones, if the platform has parasitic motion.
+    pub(crate) parasitic_motion: Option<ParasiticMotion<'a>>,
+    /// The legs.
+    pub legs: Vec<LegState<'a>>,
+    /// See [`Formulation::at_end`].
+    pub(crate) at_end: bool,
+    /// See [`Formulation::own_axes`].
+    pub(crate) own_axes: bool,
+    /// See [`Formulation::lump_end_masses`].
+    pub(crate) lump_end_masses: bool,
+    /// See [`Formulation::by_ends`].
+    pub(crate) by_ends: bool,
+    /// See [`Formulation::by_rows`].
+    by_rows: bool,
+    /// Conditions for the model to have a value.
+    pub guards: Vec<Guard<'a>>,
+    /// The motions that were asked for, whose quantities are named when all is derived.
+    pub(crate) motions: RefCell<Vec<Moved<'a>>>,
+}
+
+impl<'a> Robot<'a> {
+    /// Derives configuration and closures; `still` are coordinates of the pose that are known to be zero.
+    ///
+    /// # Errors
+    /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
+    pub fn new(
+        arena: &'a Arena,
+        mechanism: &'a Mechanism,
+        from: MotionInput,
+        formulation: &Formulation,
+        still: &[usize],
+    ) -> Result<Self, Underivable> {
+        let motion = mechanism.platform.as_ref().map(|p| p.motion);
+        // The configuration of a tree is its joints, whatever it is called.
+        let from = if mechanism.is_tree() {
+            MotionInput::Joints
+        } else {
+            from
+        };
+        // Functions scale the quaternion of a pose to length one, and legs at angles have determinants that are
+        // multiples of lengths. Where the platform may have any orientation, knowing this finds no fewer operations.
+        if mechanism.is_parasitic() {
+            arena.find_irrational_multiples();
+            arena.unit_quaternion("pose", mechanism.pose_len() - 4, still);
+        }
+        if formulation.over_divisors {
+            arena.find_over_divisors();
+        }
+        let mut robot = Self {
+            arena,
+            mechanism,
+            configuration: Configuration::new(arena, mechanism, from),
+            platform: motion.map(|m| PlatformPose::new(arena, m.of_pose(), still)),
+            twist: motion
+                .map(crate::mechanism::Motion::twist)
+                .unwrap_or_default(),
+            free: Self::free_coordinates(motion),
+            parasitic_motion: None,
+            legs: Vec::new(),
+            at_end: formulation.at_end,
+            own_axes: formulation.own_axes,
+            lump_end_masses: formulation.lump_end_masses,
+            by_ends: formulation.by_ends,
+            by_rows: formulation.by_rows,
+            guards: Vec::new(),
+            motions: RefCell::default(),
+        };
+        for leg in 0..mechanism.legs.len() {
+            robot.derive_leg(leg, formulation)?;
+        }
+        robot.parasitic_motion = robot.derive_parasitic_motion()?;
+        if robot.parasitic_motion.is_some() {
+            robot.follow_independent();
+        }
+        Ok(robot)
+    }
+
+    /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
+    fn follow_independent(&mut self) {
+        let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
+        let partials = partials.map(|parasitic| parasitic.partials(self.arena));
+        for index in 0..self.legs.len() {
+            let leg = &self.mechanism.legs[index];
+            self.arena.enter(&leg.name);
+            let rows = match (&self.legs[index].closure, &partials) {
+                (Some(closure), Some(partials)) => closure.rows_on(partials),
+                _ => {
+                    let rows = std::mem::take(&mut self.legs[index].rows).into_iter();
+                    rows.map(|row| self.on_independent(row)).collect()
+                }
+            };
+            name_rows(&rows, leg, &self.twist);
+            self.legs[index].rows = rows;
+        }
+        self.arena.enter("");
+    }
+
+    /// The frames of a leg in the base's axes.
+    #[must_use]
+    pub(crate) fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
+        let leg = &self.mechanism.legs[index];
+        let first_joint = self.legs[index].first_joint;
+        LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0, None)
+    }
+
+    /// The rates of joints that are independent coordinates, per independent coordinate.
+    pub(crate) fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
+        let dof = self.mechanism.dof();
+        let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
+        own.map(|i| (0..dof).map(|j| entry(i, j)).collect())
+            .collect()
+    }
+
+    /// The value of an expression at the home configuration, with all rates set to small numbers.
+    #[must_use]
+    pub(crate) fn at_home(&self, expr: Expr<'a>) -> f64 {
+        self.mechanism.home.value(self.arena, expr)
+    }
+
+    /// Inputs `name[0]`, `name[1]`, … as expressions.
+    #[must_use]
+    pub fn inputs(&self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
+        (0..count).map(|i| self.arena.input(name, i)).collect()
+    }
+
+    /// Velocities and accelerations of all legs and bodies.
+    #[must_use]
+    pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> Option<RobotMotion<'a>> {
+        let platform = self.platform.as_ref().map(|p| {
+            let (velocity, acceleration) = self.free_motion(twist, acceleration);
+            p.motion(&velocity, &acceleration)
+        });
+        let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let accelerations = Accelerations::new(acceleration);
+        let platform_body = |mount: &Mount<'a>| {
+            let both = self.platform.as_ref().zip(platform.as_ref());
+            both.map(|(pose, motion)| PlatformBody::new(pose, motion, gravity, mount))
+        };
+        let mut motion = RobotMotion {
+            u: vec![],
+            u_dot: vec![],
+            bodies: vec![],
+            platform_bodies: vec![],
+            ends: vec![],
+            platform: None,
+        };
+        for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
+            self.arena.enter(&leg.name);
+            let own = match (&state.closure, &platform) {
+                (Some(_), None) => state
+                    .platform
+                    .as_ref()
+                    .map(|p| p.motion(&motion.u.concat(), &motion.u_dot.concat()))
+                    .map(|end| state.less_gravity(end)),
+                _ => None,
+            };
+            let rates = match (&state.closure, own.as_ref().or(platform.as_ref())) {
+                (Some(closure), Some(platform)) => {
+                    let u = self.rates_of_leg(state, closure, twist, platform);
+                    name_rates(leg, &u, "rate");
+                    let bias = state.bias(self.arena, leg, &u);
+                    let labels = accelerations.labels(leg, "a_on_f");
+                    let u_dot = closure.accelerations(self.arena, platform, &bias, &labels);
+                    name_rates(leg, &u_dot, &accelerations.name("rate_dot"));
+                    LegRates { u, u_dot }
+                }
+                _ => {
+                    let range = self.mechanism.coordinate_range(motion.u.len());
+                    LegRates {
+                        u: twist[range.clone()].to_vec(),
+                        u_dot: acceleration[range].to_vec(),
+                    }
+                }
+            };
+            let carrier = leg.base_body;
+            let carrier = carrier.map(|body| &motion.bodies[body.leg][body.joint]);
+            let base = leg_base(self.arena, leg, rates.u.len(), carrier, gravity);
+            let bodies = leg_bodies(self.arena, leg, state, &self.configuration, &rates, &base)?;
+            let end = own.as_ref().or(platform.as_ref());
+            motion
+                .ends
+                .push(end.and_then(|end| state.end_less_gravity(leg, end)));
+            motion.u.push(rates.u);
+            motion.u_dot.push(rates.u_dot);
+            let mounts = Mount::of_leg(self.arena, leg);
+            let on_platform = mounts.iter().map(|m| m.as_ref().and_then(&platform_body));
+            motion.platform_bodies.push(on_platform.collect());
+            motion.bodies.push(bodies);
+        }
+        self.arena.enter("platform");
+        motion.platform = platform_body(&Mount::platform(self.arena));
+        self.arena.enter("");
+        self.motions.borrow_mut().push(Moved {
+            motion: motion.clone(),
+            platform,
+            accelerations,
+        });
+        Some(motion)
+    }
+
+    /// The quasi-velocities of a leg: from the velocity of what it ends on, or from the independent rates.
+    pub(crate) fn rates_of_leg(
+        &self,
+        state: &LegState<'a>,
+        closure: &LegClosure<'a>,
+        twist: &[Expr<'a>],
+        end: &PlatformMotion<'a>,
+    ) -> Vec<Expr<'a>> {
+        if self.by_rows {
+            apply(&state.rows[..closure.wrenches.len()].to_vec(), twist)
+        } else {
+            closure.velocities(end)
+        }
+    }
+
+    /// J_p^inv, n x r: the reduced Jacobian's rows of the actuated joints.
+    #[must_use]
+    pub fn inverse_jacobian(&self) -> Rows<'a> {
+        let all = self.joint_rows();
+        self.mechanism
+            .actuated()
+            .iter()
+            .map(|&i| all[i].clone())
+            .collect()
+    }
+
+    /// ∂q̇_t/∂v, n_t x r.
+    #[must_use]
+    pub(crate) fn joint_rows(&self) -> Rows<'a> {
+        let mut rows = Vec::new();
+        for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
+            self.arena.enter(&leg.name);
+            for joint in leg.independent() {
+                rows.push(state.rates.joint[joint].row(self.arena, &state.rows));
+            }
+        }
+        self.arena.enter("");
+        rows
+    }
+
+    /// Values of a form of quasi-velocities for all joints of q_t.
+    #[must_use]
+    pub fn joint_values(&self, u: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
+        let mut values = Vec::new();
+        for ((leg, state), u) in self.mechanism.legs.iter().zip(&self.legs).zip(u) {
+            values.extend(
+                leg.independent()
+                    .map(|j| state.rates.joint[j].value(self.arena, u)),
+            );
+        }
+        values
+    }
+}
+
+fn name_rates(leg: &crate::mechanism::Leg, values: &[Expr<'_>], prefix: &str) {
+    for (joint, value) in leg.independent().zip(values) {
+        let _ = value.named(&format!("{prefix}_{}_{}", leg.joints[joint].name, leg.name));
+    }
+}
+
+pub(crate) fn name_rows(rows: &Rows<'_>, leg: &crate::mechanism::Leg, twist: &[TwistCoordinate]) {
+    for (joint, row) in leg.independent().zip(rows) {
+        for (entry, coordinate) in row.iter().zip(twist) {
+            let what = format!(
+                "g{}_{}",
+                leg.joints[joint].name,
+                coordinate_label(coordinate)
+            );
+            let _ = entry.named(&joined(&[&what, &leg.name]));
+        }
+    }
+}
