@@ -113,9 +113,9 @@ fn compiled(
         false => None,
     };
     let mechanism = assembler.mechanism;
-    Ok(CompiledFunction::new(
-        mechanism, function, from, program, lanes,
-    ))
+    let mut compiled = CompiledFunction::new(mechanism, function, from, program, lanes);
+    compiled.guard_sizes(mechanism, request.float);
+    Ok(compiled)
 }
 
 /// Selects form and columns, then derives and lowers one function after the other.
