@@ -114,9 +114,9 @@ fn compiled(
         None
     };
     let mechanism = assembler.mechanism;
-    Ok(CompiledFunction::new(
-        mechanism, function, from, program, lanes,
-    ))
+    let mut compiled = CompiledFunction::new(mechanism, function, from, program, lanes);
+    compiled.guard_sizes(mechanism, request.float);
+    Ok(compiled)
 }
 
 /// Selects form and columns, then derives and lowers one function after the other.

@@ -2,7 +2,7 @@
 
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::float::Float;
-use crate::lowering::{Lanes, Program};
+use crate::lowering::{Lanes, Magnitudes, Program};
 use crate::mechanism::{JointKind, Mechanism, StandardParameter};
 use crate::runtime::Runtime;
 use crate::selection::{self, BaseParameter};
@@ -41,6 +41,32 @@ impl CompiledFunction {
             from,
             program,
             lanes,
+        }
+    }
+
+    /// Adds guards so that all values of the function's programs are finite.
+    pub(crate) fn guard_sizes(&mut self, mechanism: &Mechanism, float: Float) {
+        let magnitudes = Magnitudes::new(float);
+        let platform = mechanism.platform.as_ref();
+        let has_quaternion = platform.is_some_and(|platform| platform.motion.has_quaternion());
+        let position = mechanism.pose_len().saturating_sub(4);
+        let names: Vec<String> = self.program.inputs.iter().map(|i| i.name.clone()).collect();
+        let bounds = |array: usize, index: usize| match names.get(array).map(String::as_str) {
+            // Of length 1 but for rounding.
+            Some("pose") if has_quaternion && index >= position => 0.5,
+            // What an iteration finds is a step further than its last pose or joints.
+            Some(name @ ("pose" | "joints")) => magnitudes.of_input(name) + 1.0,
+            Some(name) => magnitudes.of_input(name),
+            None => f64::INFINITY,
+        };
+        // What starts from this pose takes it as it is.
+        let most = match self.computes {
+            Function::PoseInClosedForm => float.limits().largest.position,
+            _ => f64::INFINITY,
+        };
+        magnitudes.guard(&mut self.program, &bounds, most);
+        if let Some(lanes) = &mut self.lanes {
+            magnitudes.guard_lanes(lanes, &bounds);
         }
     }
 }

@@ -71,13 +71,18 @@ pub enum Error {
         /// The input's name.
         input: &'static str,
     },
+    /// A number of an input is larger than [`Largest`](crate::limits::Largest) allows: values computed from it
+    /// might be too large for a number.
+    OutOfRange {
+        /// The input's name.
+        input: &'static str,
+    },
     /// The quaternion of a pose has no direction, so that it is no rotation.
     ZeroQuaternion {
         /// The input's name.
         input: &'static str,
     },
-    /// Results are too large for a number, although all inputs are finite. Models don't look for this;
-    /// those who use them may.
+    /// A value on the way to the results, or a result, is too large for a number, although all inputs are in range.
     Overflow,
     /// A function was given another number of inputs than it takes.
     Inputs {
@@ -160,13 +165,17 @@ impl fmt::Display for Error {
             Self::NotFinite { input } => {
                 write!(f, "`{input}` has a number that is not finite")
             }
+            Self::OutOfRange { input } => write!(
+                f,
+                "`{input}` has a number that is too large: values computed from it might overflow"
+            ),
             Self::ZeroQuaternion { input } => {
                 write!(
                     f,
                     "the quaternion of `{input}` is zero, which is no rotation"
                 )
             }
-            Self::Overflow => write!(f, "a result is too large for a number"),
+            Self::Overflow => write!(f, "a value is too large for a number"),
             Self::Inputs { expected, found } => {
                 write!(f, "the function takes {expected} inputs, found {found}")
             }

@@ -1,7 +1,10 @@
-//! From where on numbers count as zero, for each precision that robots are computed in.
+//! From where on numbers count as zero, and which are too large, for each precision that robots are computed in.
 //!
 //! A limit is a number of roundings away from zero, and so of another size where numbers are shorter. The
 //! runtime, the interpreter and generated C take theirs from here.
+//!
+//! Inputs of generated functions are bounded by [`Largest`]. With these bounds the generator proves that no value of
+//! a function overflows, and puts a guard on each value for which it cannot.
 
 use crate::singular::SINGULAR;
 
@@ -10,6 +13,9 @@ use crate::singular::SINGULAR;
 pub struct Limits {
     /// A determinant below this fraction of its magnitude at home counts as zero.
     pub singular: f64,
+    /// A radicand of inverse or forward kinematics below this fraction of its value at home is lost in rounding: its
+    /// root has less than two digits.
+    pub radicand: f64,
     /// How far from 1 the square of a quaternion's length may be for its inverse root to be linear: the error is 3/8
     /// of the square of this.
     pub quaternion: f64,
@@ -25,11 +31,43 @@ pub struct Limits {
     pub closed: f64,
     /// A partition of case 2 whose condition number is larger counts as singular.
     pub partition: f64,
+    /// Largest magnitudes of inputs.
+    pub largest: Largest,
+}
+
+/// Largest magnitudes of a function's inputs, by quantity, in SI units. All are far above physical values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Largest {
+    /// Coordinates of poses, positions of joints and actuators (m, rad).
+    pub position: f64,
+    /// Twists, rates of joints and actuators (m/s, rad/s).
+    pub velocity: f64,
+    /// Their derivatives (m/s², rad/s²).
+    pub acceleration: f64,
+    /// Forces and torques (N, N m).
+    pub force: f64,
+    /// Standard and base parameters.
+    pub parameter: f64,
+}
+
+impl Largest {
+    /// The bound of an input by the name of its array in generated code.
+    #[must_use]
+    pub fn of(&self, array: &str) -> f64 {
+        match array {
+            "twist" | "joint_velocities" | "actuator_velocities" => self.velocity,
+            "acceleration" | "joint_accelerations" | "actuator_accelerations" => self.acceleration,
+            "torques" | "preload" => self.force,
+            "parameters" | "base_parameters" => self.parameter,
+            _ => self.position,
+        }
+    }
 }
 
 /// Of numbers of 64 bits, whose roundings are 10⁻¹⁶ of them.
 pub const DOUBLE: Limits = Limits {
     singular: SINGULAR,
+    radicand: 1e-13,
     quaternion: 1e-8,
     step: 1e-12,
     farthest: 4e3,
@@ -37,12 +75,20 @@ pub const DOUBLE: Limits = Limits {
     joint_step: 1e-13,
     closed: 1e-10,
     partition: 1e9,
+    largest: Largest {
+        position: 1e15,
+        velocity: 1e15,
+        acceleration: 1e15,
+        force: 1e15,
+        parameter: 1e15,
+    },
 };
 
 /// Of numbers of 32 bits, whose roundings are 6 · 10⁻⁸ of them. Lengths and angles of about 1 are known to 10⁻⁷, and
 /// steps of an iteration, which divide by a Jacobian, to some 10⁻⁶.
 pub const SINGLE: Limits = Limits {
     singular: 1e-5,
+    radicand: 1e-5,
     quaternion: 2e-4,
     step: 1e-5,
     farthest: 80.0,
@@ -50,4 +96,11 @@ pub const SINGLE: Limits = Limits {
     joint_step: 3e-6,
     closed: 3e-5,
     partition: 1e5,
+    largest: Largest {
+        position: 1e4,
+        velocity: 1e6,
+        acceleration: 1e9,
+        force: 1e9,
+        parameter: 1e6,
+    },
 };

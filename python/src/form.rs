@@ -1,7 +1,7 @@
 //! A function of a robot in one of its forms (from the pose, from joints, from actuators), evaluated over
 //! samples.
 
-use overact::{Error, Function, Input, Model, SampleError};
+use overact::{Error, Function, Input, Model, SampleError, guard, limits::DOUBLE};
 use overact_codegen::{
     CompiledFunction, RobotModel,
     derivation::MotionInput,
@@ -111,7 +111,7 @@ impl Form {
         start: &mut [f64],
         output: &mut [f64],
     ) -> Result<(), SampleError> {
-        self.check_finite(inputs)?;
+        self.check_range(inputs)?;
         let given = |name: &str| {
             let at = self.arguments.iter().position(|one| one.name == name);
             at.map(|at| (inputs[at], self.arguments[at].length))
@@ -173,20 +173,22 @@ impl Form {
         result
     }
 
-    /// The first sample with a number that is not finite is an error.
-    fn check_finite(&self, inputs: &[&[f64]]) -> Result<(), SampleError> {
+    /// The first sample with a number that is not finite or too large is an error.
+    fn check_range(&self, inputs: &[&[f64]]) -> Result<(), SampleError> {
         let bad = self
             .arguments
             .iter()
             .zip(inputs)
             .filter_map(|(own, values)| {
-                let at = values.iter().position(|value| !value.is_finite())?;
+                let most = DOUBLE.largest.of(&own.name);
+                let at = values.iter().position(|value| !(value.abs() <= most))?;
                 let is_row = values.len() == own.length;
+                let row = values.chunks(own.length).nth(at / own.length);
+                let input = known_name(&own.name);
+                let error = guard::within(&[(input, row.unwrap_or_default(), most)]);
                 Some(SampleError {
                     sample: if is_row { 0 } else { at / own.length },
-                    error: Error::NotFinite {
-                        input: known_name(&own.name),
-                    },
+                    error: error.err()?,
                 })
             });
         bad.min_by_key(|error| error.sample).map_or(Ok(()), Err)

@@ -48,7 +48,9 @@ const fn operation(operation: &Operation) -> &'static str {
 
 fn condition(condition: &Condition) -> String {
     match condition {
-        Condition::Reach { leg } => format!("the pose is in reach of leg {leg}: not negative"),
+        Condition::Reach { leg, .. } => {
+            format!("the pose is in reach of leg {leg}: not negative, nor near zero")
+        }
         Condition::Leg { leg, .. } => format!("leg {leg} is regular: not zero"),
         Condition::Platform { actuators, .. } => {
             format!("the {actuators} determine the platform's motion: not zero")
@@ -58,6 +60,7 @@ fn condition(condition: &Condition) -> String {
             "the independent coordinates determine the others: not zero".to_owned()
         }
         Condition::Mass => "the mass matrix is positive definite: positive".to_owned(),
+        Condition::Size { most } => format!("nothing overflows: a magnitude of at most {most:.1e}"),
     }
 }
 

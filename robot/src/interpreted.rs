@@ -11,7 +11,9 @@ mod newton;
 
 use forward::Scratch;
 use names::Names;
-use overact::{Error, Function, Info, Input, Model, SampleError, block::samples, guard};
+use overact::{
+    Error, Function, Info, Input, Model, SampleError, block::samples, guard, limits::DOUBLE,
+};
 use overact_codegen::{
     RobotModel,
     derivation::MotionInput,
@@ -193,7 +195,13 @@ impl InterpretedRobot {
             .get(failed.guard)
             .map(|guard| &guard.condition)
         {
-            Some(Condition::Reach { leg: name }) => Error::OutOfReach { leg: leg(name) },
+            Some(Condition::Reach { leg: name, .. }) if !(failed.value >= 0.0) => {
+                Error::OutOfReach { leg: leg(name) }
+            }
+            Some(Condition::Reach { leg: name, home }) => Error::SingularLeg {
+                leg: leg(name),
+                condition: times(*home).sqrt(),
+            },
             Some(Condition::Leg { leg: name, home }) => Error::SingularLeg {
                 leg: leg(name),
                 condition: times(*home),
@@ -210,7 +218,7 @@ impl InterpretedRobot {
                 condition: times(*home),
             },
             Some(Condition::Mass) => Error::MassMatrix,
-            None => Error::Overflow,
+            Some(Condition::Size { .. }) | None => Error::Overflow,
         };
         SampleError {
             sample: failed.sample,
@@ -218,24 +226,24 @@ impl InterpretedRobot {
         }
     }
 
-    /// The first sample with an input that is not finite, and the input's name.
-    fn first_not_finite(&self, function: Function, inputs: &[&[f64]]) -> Option<SampleError> {
+    /// The first sample with an input that is not finite or too large, and the input's name.
+    fn first_out_of_range(&self, function: Function, inputs: &[&[f64]]) -> Option<SampleError> {
         let sizes = &self.names.sizes;
         let kinds = function.inputs().iter().zip(inputs);
         let of = |(kind, values): (&Input, &&[f64])| {
-            // Seldom one is not: the first is looked for where there is one, and all are asked without a branch.
-            let exponent = f64::INFINITY.to_bits();
-            let is_bad = |value: &f64| value.to_bits() & exponent == exponent;
-            if !values.iter().fold(false, |any, value| any | is_bad(value)) {
+            // Seldom one is: the first is looked for where there is one, and all are asked without a branch.
+            let input = self.called(*kind);
+            let most = DOUBLE.largest.of(input);
+            let is_good = |value: &f64| value.abs() <= most;
+            if values.iter().fold(true, |all, value| all & is_good(value)) {
                 return None;
             }
-            let at = values.iter().position(|value| !value.is_finite())?;
+            let at = values.iter().position(|value| !is_good(value))?;
             let row = sizes.of(*kind);
-            let input = self.called(*kind);
-            Some(SampleError {
-                sample: if values.len() == row { 0 } else { at / row },
-                error: Error::NotFinite { input },
-            })
+            let sample = if values.len() == row { 0 } else { at / row };
+            let numbers = values.chunks(row).nth(at / row).unwrap_or_default();
+            let error = guard::within(&[(input, numbers, most)]).err()?;
+            Some(SampleError { sample, error })
         };
         kinds.filter_map(of).min_by_key(|error| error.sample)
     }
@@ -356,7 +364,7 @@ impl Model for InterpretedRobot {
             return Ok(());
         }
         // As in compiled robots, the first sample that fails is told, whatever is wrong with it.
-        let mut bad = self.first_not_finite(function, inputs);
+        let mut bad = self.first_out_of_range(function, inputs);
         let (mut scaled, unit);
         let mut inputs = inputs;
         if self.has_quaternion() && function.inputs().first() == Some(&Input::Pose) {
@@ -383,7 +391,8 @@ impl Model for InterpretedRobot {
                 return Err(Error::Length { expected, found });
             }
         }
-        guard::finite(&[("actuators", actuators), ("start", pose)])?;
+        let most = DOUBLE.largest.position;
+        guard::within(&[("actuators", actuators, most), ("start", pose, most)])?;
         if self.model.is_tree() {
             pose.copy_from_slice(actuators);
             return Ok(());

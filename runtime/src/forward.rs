@@ -109,7 +109,11 @@ fn iterate<T: Float>(
 ) -> Result<bool, Error> {
     let mut before = T::ZERO;
     for _ in 0..STEPS {
-        find(pose, step)?;
+        match find(pose, step) {
+            // A pose that has run away is none that was given.
+            Err(Error::NotFinite { .. } | Error::OutOfRange { .. }) => break,
+            found => found?,
+        }
         displace(pose, step);
         // Of a number and none that is one the maximum is the number; their sum is none.
         let total: T = step.iter().map(|s| s.abs()).sum();

@@ -8,6 +8,44 @@ use crate::{ActuatorGroup, Error};
 /// An input with the name that errors call it by.
 pub type Named<'a, T> = (&'static str, &'a [T]);
 
+/// An input with the name that errors call it by, and the largest magnitude that its numbers may have.
+pub type Bounded<'a, T> = (&'static str, &'a [T], T);
+
+/// All numbers of all inputs must be finite and in range, so that nothing that is computed from them overflows.
+///
+/// # Errors
+/// [`Error::NotFinite`] or [`Error::OutOfRange`] of the first input that has another one.
+#[inline(always)]
+pub fn within<T: Float>(inputs: &[Bounded<'_, T>]) -> Result<(), Error> {
+    // One comparison for all: there is nothing to gain from an early end, and without one the loops become vectors.
+    let mut good = true;
+    for (_, values, most) in inputs {
+        for value in *values {
+            good &= value.abs() <= *most;
+        }
+    }
+    if good {
+        return Ok(());
+    }
+    // The inputs are handed out one by one, as in `finite`.
+    let mut error = Error::Overflow;
+    for (input, values, most) in inputs.iter().rev() {
+        error = out_of_range(input, values, *most).unwrap_or(error);
+    }
+    Err(error)
+}
+
+/// What is wrong with an input, out of the way of what is usual.
+#[cold]
+#[inline(never)]
+fn out_of_range<T: Float>(input: &'static str, values: &[T], most: T) -> Option<Error> {
+    if has_other(values) {
+        return Some(Error::NotFinite { input });
+    }
+    let is_large = values.iter().any(|value| value.abs() > most);
+    is_large.then_some(Error::OutOfRange { input })
+}
+
 /// All numbers of all inputs must be finite.
 ///
 /// # Errors
@@ -94,16 +132,41 @@ fn normalise_others<T: Float>(quaternion: &mut [T; 4], input: &'static str) -> R
     Ok(())
 }
 
-/// The radicand of a leg's inverse kinematics must not be negative.
+/// The radicand of a leg's inverse kinematics must be neither negative nor lost in rounding; `home` is its value at
+/// home, zero if only the sign matters.
 ///
 /// # Errors
-/// [`Error::OutOfReach`]; also for NaN.
+/// [`Error::OutOfReach`], also for NaN; [`Error::SingularLeg`] near the limit of the leg's reach.
 #[inline]
-pub fn reach<T: Float>(radicand: T, leg: &'static str) -> Result<(), Error> {
-    if radicand >= T::ZERO {
+pub fn reach<T: Float>(radicand: T, home: T, leg: &'static str) -> Result<(), Error> {
+    if radicand >= T::of(T::LIMITS.radicand) * home {
         Ok(())
     } else {
-        Err(Error::OutOfReach { leg })
+        Err(not_reached(radicand, home, leg))
+    }
+}
+
+/// What is wrong with a radicand. A leg's determinant goes with its root.
+#[cold]
+fn not_reached<T: Float>(radicand: T, home: T, leg: &'static str) -> Error {
+    if radicand >= T::ZERO {
+        let condition = (home / radicand).sqrt().into();
+        Error::SingularLeg { leg, condition }
+    } else {
+        Error::OutOfReach { leg }
+    }
+}
+
+/// A value must not be larger than `most`, so that nothing that is computed from it overflows.
+///
+/// # Errors
+/// [`Error::Overflow`]; also for NaN.
+#[inline]
+pub fn size<T: Float>(value: T, most: T) -> Result<(), Error> {
+    if value.abs() <= most {
+        Ok(())
+    } else {
+        Err(Error::Overflow)
     }
 }
 
@@ -183,7 +246,7 @@ pub fn mass<T: Float>(pivot: T) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::{finite, leg, unit_quaternion};
+    use super::{finite, leg, reach, size, unit_quaternion, within};
     use crate::Error;
 
     #[test]
@@ -198,6 +261,47 @@ mod tests {
             }
         }
         assert_eq!(finite(&[("pose", &large), ("twist", &large)]), Ok(()));
+    }
+
+    #[test]
+    fn the_first_input_beyond_its_range_is_named() {
+        let (pose, twist) = ([1e3, -1e3], [0.5, 2.0]);
+        let check =
+            |pose: &[f64], twist: &[f64]| within(&[("pose", pose, 1e3), ("twist", twist, 2.0)]);
+        assert_eq!(check(&pose, &twist), Ok(()));
+        let too_large = Err(Error::OutOfRange { input: "twist" });
+        assert_eq!(check(&pose, &[-2.1, 0.0]), too_large);
+        let not_finite = Err(Error::NotFinite { input: "pose" });
+        assert_eq!(check(&[f64::NAN, 0.0], &[-2.1, 0.0]), not_finite);
+        assert_eq!(check(&[1e4, f64::INFINITY], &twist), not_finite);
+    }
+
+    #[test]
+    fn a_radicand_of_roundings_is_singular() {
+        assert_eq!(reach(1e-12, 1.0, "a"), Ok(()));
+        assert_eq!(reach(0.0, 0.0, "a"), Ok(()));
+        let near = reach(1e-16, 1.0, "a");
+        assert!(
+            matches!(near, Err(Error::SingularLeg { leg: "a", condition }) if (condition / 1e8 - 1.0).abs() < 1e-9),
+            "{near:?}"
+        );
+        let zero = reach(0.0, 1.0, "a");
+        assert!(matches!(zero, Err(Error::SingularLeg { .. })), "{zero:?}");
+        for beyond in [-1e-16, f64::NAN] {
+            assert_eq!(reach(beyond, 1.0, "a"), Err(Error::OutOfReach { leg: "a" }));
+        }
+        assert!(matches!(
+            reach(1e-6_f32, 1.0, "a"),
+            Err(Error::SingularLeg { .. })
+        ));
+    }
+
+    #[test]
+    fn a_value_that_is_too_large_is_an_overflow() {
+        assert_eq!(size(-1e100, 1e100), Ok(()));
+        for bad in [1.1e100, f64::INFINITY, f64::NAN] {
+            assert_eq!(size(bad, 1e100), Err(Error::Overflow));
+        }
     }
 
     #[test]

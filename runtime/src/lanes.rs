@@ -14,7 +14,7 @@ mod side_by_side;
 mod vector;
 
 pub use chosen::{few, four, many};
-pub use guards::{Failed, closed, leg, reach};
+pub use guards::{Failed, closed, leg, reach, size};
 pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
 pub use side_by_side::SideBySide;
 pub use vector::{Few, Many, Vector};

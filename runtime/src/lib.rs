@@ -32,7 +32,7 @@ pub use filled::filled;
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
     ActuatorGroup, Actuators, Code, Columns, Condition, Error, Explanation, Extent, Function,
-    Input, SINGULAR, SampleError, Sizes, StandardParameter,
+    Input, SINGULAR, SampleError, Sizes, StandardParameter, limits,
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

@@ -91,7 +91,8 @@ impl<const R: usize> Partition<R> {
     /// A regressor of case 1 becomes that of case 2.
     ///
     /// # Errors
-    /// [`Error::Length`] if the numbers are no r rows.
+    /// [`Error::Length`] if the numbers are no r rows, [`Error::NotFinite`] if one is not finite, [`Error::Overflow`] if
+    /// a result is too large for a number; the columns behind it are left as they were then.
     pub fn project(&self, inputs: &mut [f64]) -> Result<(), Error> {
         let columns = inputs.len().checked_div(R).unwrap_or(0);
         if inputs.len() != columns * R {
@@ -100,12 +101,17 @@ impl<const R: usize> Partition<R> {
                 found: inputs.len(),
             });
         }
+        guard::finite(&[("inputs", inputs)])?;
         for column in 0..columns {
             let mut vector = [0.0; R];
             for (row, entry) in vector.iter_mut().enumerate() {
                 *entry = inputs[row * columns + column];
             }
-            for (row, entry) in self.solve(&vector).into_iter().enumerate() {
+            let solution = self.solve(&vector);
+            if solution.iter().any(|entry| !entry.is_finite()) {
+                return Err(Error::Overflow);
+            }
+            for (row, entry) in solution.into_iter().enumerate() {
                 inputs[row * columns + column] = entry;
             }
         }

@@ -3,6 +3,7 @@
 mod at_once;
 mod binaries;
 mod book;
+mod deny;
 mod files;
 mod freshness;
 mod generated;
@@ -16,6 +17,8 @@ mod page;
 mod release;
 mod robots;
 mod times;
+#[cfg(test)]
+mod workflows;
 
 use std::process::ExitCode;
 
@@ -30,6 +33,8 @@ cargo xtask freshness           fail unless generated/ is what the generator wri
 cargo xtask freshness all       the same, all robots are
 cargo xtask measure EFFORT FILE what generation makes of a description, in numbers (JSON)
 cargo xtask book                write docs/errors.md, and the book to target/book for mdbook
+cargo xtask deny [CHECK]...     advisories, licences, sources and duplicates of all workspaces by cargo-deny; skipped
+                                if it is not installed
 cargo xtask links               fail unless every link of the documentation leads somewhere and errors.md is fresh
 cargo xtask package [OPTION]... archives of all published packages, built as they will be (cargo package)
 cargo xtask page                build the page for browsers into target/page; skipped without a Rust for them
@@ -48,6 +53,7 @@ fn main() -> ExitCode {
         ["freshness"] => freshness::check(false),
         ["freshness", "all"] => freshness::check(true),
         ["book"] => book::write_all(),
+        ["deny", ref checks @ ..] => deny::check(checks),
         ["links"] => links::check().and_then(|()| book::check()),
         ["package", ref options @ ..] => release::package(options),
         ["page"] => page::build(),

@@ -1,7 +1,7 @@
 //! What a function should give: its program, evaluated, after what Rust's runtime finds before it runs.
 
 use crate::driver::Call;
-use overact::{Error, Function, Model};
+use overact::{Error, Function, Model, guard};
 use overact_codegen::derivation::BodyParameter;
 use overact_codegen::evaluation::Rows;
 use overact_codegen::internals::random_states;
@@ -74,6 +74,7 @@ pub(crate) fn output(
     inputs: &Inputs,
 ) -> Result<Vec<f64>, Error> {
     let model = robot.model();
+    in_range(model, index, inputs)?;
     let (actuators, start) = (&inputs["actuators"], &inputs["start"]);
     let forward = || {
         let mut pose = start.clone();
@@ -123,6 +124,20 @@ pub(crate) fn output(
     }
 }
 
+/// The arguments of a call are finite and not too large.
+fn in_range(model: &RobotModel, index: usize, inputs: &Inputs) -> Result<(), Error> {
+    let largest = model.float.limits().largest;
+    let arguments = model
+        .functions
+        .get(index)
+        .map_or_else(|| forward_arguments(model), |f| arguments(model, f));
+    for (name, _) in arguments {
+        let (name, values) = (inputs.get_key_value(name.as_str())).ok_or(Error::Overflow)?;
+        guard::within(&[(*name, &values[..], largest.of(name))])?;
+    }
+    Ok(())
+}
+
 /// Numbers between -1 and 1 that are alike whenever they are drawn.
 pub(crate) struct Dice(u64);
 
@@ -137,6 +152,12 @@ impl Dice {
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// A number of either sign whose magnitude is between 1e-30 and ten to the power `largest`.
+    pub(crate) fn of_any_size(&mut self, largest: f64) -> f64 {
+        let exponent = 0.5 * (self.next() + 1.0) * (largest + 30.0) - 30.0;
+        10.0_f64.powf(exponent).copysign(self.next())
     }
 
     fn many(&mut self, count: usize, size: f64) -> Vec<f64> {

@@ -3,6 +3,7 @@
 
 mod driver;
 mod expected;
+mod extreme;
 mod partition;
 mod single;
 
@@ -205,6 +206,16 @@ fn compare(
                 "{name}: {worst:.1e} of partitions"
             );
         }
+        let extremes = extreme::extremes(&near, 308.0);
+        let arguments: Vec<Vec<String>> = calls.iter().map(|(_, names)| names.clone()).collect();
+        let arguments = &arguments[..functions];
+        extreme::check(
+            &robot,
+            &driver,
+            arguments,
+            &extremes,
+            extreme::Errors::Compared,
+        )?;
         seen = Some(new);
     }
     Ok(seen)

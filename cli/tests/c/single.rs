@@ -2,6 +2,7 @@
 
 use crate::driver::{Compiler, Driver, Failure, Question};
 use crate::expected::{Inputs, calls, output, states};
+use crate::extreme::{Errors, check, extremes};
 use crate::{change, difference, folder, model, repository, robots};
 use overact_codegen::{Effort, Float, c};
 use overact_robot::InterpretedRobot;
@@ -70,6 +71,8 @@ fn compare(name: &str, functions: &[&str], path: &str, count: usize) -> Result<(
     let compiler = by_tier([compiler, compiler.unoptimised()]);
     let driver = Driver::build(compiler, &at, &files, calls.clone(), Float::F32)?;
     let texts = driver.texts()?;
+    let extremes = extremes(&states, 38.0);
+    check(&robot, &driver, &arguments, &extremes, Errors::Any)?;
     let (mut worst, mut sensitive, mut beyond) = ((0.0, ""), (0, 0.0, ""), 0);
     for ((state, call), (error, found)) in each().zip(driver.answers(&questions)?) {
         let function = calls[call].name.as_str();

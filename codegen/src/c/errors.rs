@@ -87,7 +87,24 @@ fn kinds(model: &RobotModel) -> Vec<Kind> {
             text: format!("leg `{}` does not allow the pose", leg.name),
         }));
     }
+    kinds.push(kind("OVERFLOW", "a value is too large for a number"));
+    kinds.extend(INPUTS.iter().map(|input| Kind {
+        name: out_of_range(input),
+        text: format!(
+            "`{input}` has a number that is too large: values computed from it might overflow"
+        ),
+    }));
+    kinds.push(Kind {
+        name: not_finite("inputs"),
+        text: "`inputs` has a number that is not finite".to_owned(),
+    });
     kinds
+}
+
+/// The enumerator of an input that is too large, without prefix.
+#[must_use]
+pub fn out_of_range(input: &str) -> String {
+    format!("OUT_OF_RANGE_{}", input.to_uppercase())
 }
 
 /// The enumerator of an input that is not finite, without prefix.
@@ -114,20 +131,30 @@ pub fn leg_constants(model: &RobotModel) -> Vec<String> {
     legs.map(name).collect()
 }
 
+/// A leg in capitals.
+fn leg_constant(model: &RobotModel, leg: &str) -> String {
+    let at = model.mechanism.legs.iter().position(|l| l.name == leg);
+    let name = at.and_then(|at| leg_constants(model).into_iter().nth(at));
+    name.unwrap_or_default()
+}
+
+/// The enumerator, without prefix, of a leg that is singular.
+#[must_use]
+pub fn singular_leg(model: &RobotModel, leg: &str) -> String {
+    format!("SINGULAR_LEG_{}", leg_constant(model, leg))
+}
+
 /// The enumerator, without prefix, of a condition that does not hold.
 #[must_use]
 pub fn of_condition(model: &RobotModel, condition: &Condition) -> String {
-    let leg = |leg: &str| {
-        let at = model.mechanism.legs.iter().position(|l| l.name == leg);
-        let name = at.and_then(|at| leg_constants(model).into_iter().nth(at));
-        name.unwrap_or_default()
-    };
+    let leg = |leg: &str| leg_constant(model, leg);
     match condition {
-        Condition::Reach { leg: name } => format!("OUT_OF_REACH_{}", leg(name)),
-        Condition::Leg { leg: name, .. } => format!("SINGULAR_LEG_{}", leg(name)),
+        Condition::Reach { leg: name, .. } => format!("OUT_OF_REACH_{}", leg(name)),
+        Condition::Leg { leg: name, .. } => singular_leg(model, name),
         Condition::Closed { leg: name, .. } => format!("NOT_CLOSED_{}", leg(name)),
         Condition::Coordinates { .. } => "SINGULAR_COORDINATES".to_owned(),
         Condition::Mass => "MASS_MATRIX".to_owned(),
+        Condition::Size { .. } => "OVERFLOW".to_owned(),
         Condition::Platform { actuators, .. } => match actuators {
             ActuatorGroup::All => "SINGULAR_ACTUATORS".to_owned(),
             ActuatorGroup::Kept => "SINGULAR_KEPT_ACTUATORS".to_owned(),

@@ -111,10 +111,13 @@ impl Writer<'_> {
 
     fn guard(&self, value: &Expression, condition: &Condition) -> String {
         let holds = match condition {
-            Condition::Reach { .. } => format!("{} >= 0.0", self.text(value)),
+            Condition::Reach { home, .. } => {
+                let least = self.model.float.limits().radicand * home;
+                format!("{} >= {}", self.text(value), number(least))
+            }
             Condition::Mass => format!("{} > 0.0", self.text(value)),
-            Condition::Closed { within, .. } => {
-                format!("fabs({}) <= {}", self.text(value), number(*within))
+            Condition::Closed { within: most, .. } | Condition::Size { most } => {
+                format!("fabs({}) <= {}", self.text(value), number(*most))
             }
             Condition::Leg { home, .. }
             | Condition::Platform { home, .. }
@@ -126,8 +129,18 @@ impl Writer<'_> {
                 )
             }
         };
-        let error = errors::of_condition(self.model, condition);
-        fails(&holds, &self.naming.constant(&error))
+        let error = self
+            .naming
+            .constant(&errors::of_condition(self.model, condition));
+        match condition {
+            Condition::Reach { leg, home } if *home > 0.0 => {
+                let singular = errors::singular_leg(self.model, leg);
+                let singular = self.naming.constant(&singular);
+                let is_negative = format!("!({} >= 0.0)", self.text(value));
+                fails(&holds, &format!("({is_negative}) ? {error} : {singular}"))
+            }
+            _ => fails(&holds, &error),
+        }
     }
 
     /// The text, in parentheses if the context binds more tightly.

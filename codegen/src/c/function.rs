@@ -4,6 +4,7 @@ use super::errors;
 use super::expression::{Writer, fails};
 use super::lines::documentation;
 use super::naming::Naming;
+use super::tables::number;
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
@@ -63,7 +64,7 @@ pub fn has_quaternion(model: &RobotModel) -> bool {
     platform.is_some_and(|platform| platform.motion.has_quaternion())
 }
 
-/// What a function does before all else: it refuses numbers that are not finite, scales the quaternion of a pose
+/// What a function does before all else: it refuses numbers that are not finite or too large, scales the quaternion of a pose
 /// to length 1, and finds the pose and the joints that the rest takes.
 fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> String {
     let mut out = String::new();
@@ -74,8 +75,7 @@ fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> Strin
             out += &format!("    (void){name};\n");
             continue;
         }
-        let holds = format!("{}({name}, {length})", naming.name("is_finite"));
-        out += &fails(&holds, &naming.constant(&errors::not_finite(name)));
+        out += &in_range(name, &length.to_string(), naming);
     }
     if takes_pose(outline) && has_quaternion(model) {
         out += &format!("    double unit_pose[{}];\n", naming.constant("POSE"));
@@ -95,6 +95,20 @@ fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> Strin
         out += &found("found_joints", "JOINTS", &call, naming);
     }
     out
+}
+
+/// Refuses an input with a number that is not finite or too large.
+#[must_use]
+pub fn in_range(name: &str, length: &str, naming: &Naming) -> String {
+    let most = number(naming.float.limits().largest.of(name));
+    let holds = format!("{}({name}, {length}, {most})", naming.name("is_within"));
+    let error = format!(
+        "{}({name}, {length}) ? {} : {}",
+        naming.name("is_finite"),
+        naming.constant(&errors::out_of_range(name)),
+        naming.constant(&errors::not_finite(name))
+    );
+    fails(&holds, &error)
 }
 
 /// An array that a function fills, or its error.
@@ -206,8 +220,8 @@ fn documented(
         table.unwrap_or_default()
     ));
     lines.push(match outline.can_fail {
-        true => "@return 0, or an error: an input that is not finite, a pose out of reach, or a singular configuration.",
-        false => "@return 0, or an error: an input that is not finite.",
+        true => "@return 0, or an error: an input that is not finite or too large, a pose out of reach, or a singular configuration.",
+        false => "@return 0, or an error: an input that is not finite or too large.",
     }.to_owned());
     lines.push(String::new());
     let operations = operations::of_function(&model.cost(function));

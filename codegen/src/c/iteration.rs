@@ -6,7 +6,7 @@
 //! In the texts `rob_` and `ROB_` stand for the robot's prefix.
 
 use super::errors;
-use super::function::{has_quaternion, signature};
+use super::function::{has_quaternion, in_range, signature};
 use super::lines::documentation;
 use super::naming::Naming;
 use crate::derivation::{JointsBy, MotionInput};
@@ -23,17 +23,6 @@ const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
 /// The loop around the steps that `rob_FIND` finds.
 const STEPS: &str = include_str!("text/steps.c");
 const FIT_POSE: &str = include_str!("text/fit_pose.c");
-/// Arguments that are not finite.
-const FORWARD_CHECKS: &str = "
-{
-    if (!(rob_is_finite(actuators, ROB_ACTUATORS))) {
-        return ROB_NOT_FINITE_ACTUATORS;
-    }
-    if (!(rob_is_finite(start, ROB_POSE))) {
-        return ROB_NOT_FINITE_START;
-    }
-";
-
 const FORWARD_OF_A_TREE: &str = "    for (int i = 0; i < ROB_POSE; i++) {
         output[i] = actuators[i];
     }
@@ -113,13 +102,6 @@ const WAY_OF_A_QUATERNION: &str = "            {
             }
 ";
 
-const JOINTS_CHECKS: &str = "
-{
-    if (!(rob_is_finite(pose, ROB_POSE))) {
-        return ROB_NOT_FINITE_POSE;
-    }
-";
-
 const JOINTS_CHECKS_QUATERNION: &str = "    double unit_pose[ROB_POSE];
     if (!(rob_unit_quaternion(pose, unit_pose))) {
         return ROB_ZERO_QUATERNION_POSE;
@@ -170,7 +152,7 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
             "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
             "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),
             "@param[out] output [ROB_POSE]".to_owned(),
-            "@return 0, or an error: an input that is not finite, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
+            "@return 0, or an error: an input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
         ];
         out += &naming.apply(&documentation(&lines));
         let signature = signature("pose_from_actuators", &forward_arguments(model), naming);
@@ -227,8 +209,12 @@ fn has_joints(model: &RobotModel) -> bool {
 fn forward(model: &RobotModel, naming: &Naming) -> String {
     let head = signature("pose_from_actuators", &forward_arguments(model), naming);
     let text = |parts: &[&str]| naming.apply(&parts.concat());
+    let checks = [("actuators", "ACTUATORS"), ("start", "POSE")]
+        .map(|(input, size)| in_range(input, &naming.constant(size), naming))
+        .concat();
+    let checks = format!("\n{{\n{checks}");
     if model.is_tree() {
-        return format!("{head}{}", text(&[FORWARD_CHECKS, FORWARD_OF_A_TREE]));
+        return format!("{head}{checks}{}", text(&[FORWARD_OF_A_TREE]));
     }
     let aside = model.mechanism.independent_coordinates();
     let (displace, start) = match (has_quaternion(model), &aside) {
@@ -250,8 +236,8 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     let displace = [&tables, &turn, displace].concat();
     let helpers = text(&[&displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
     let found = found.replace("rob_FIT", fit);
-    let body = text(&[FORWARD_CHECKS, start, &found, FORWARD_END]);
-    format!("{helpers}{head}{body}")
+    let body = text(&[start, &found, FORWARD_END]);
+    format!("{helpers}{head}{checks}{body}")
 }
 
 /// The function that fits a pose, and its text.
@@ -321,5 +307,6 @@ fn joints(model: &RobotModel, naming: &Naming) -> String {
     let body = JOINTS.replace("ROB_GOAL", goal).replace("ROB_WAY", way);
     let text = |parts: &[&str]| naming.apply(&parts.concat());
     out += &text(&["\n", NEWTON, "\n"]);
-    out + &head + &text(&[JOINTS_CHECKS, scaled, &body])
+    let checks = in_range("pose", &naming.constant("POSE"), naming);
+    out + &head + &format!("\n{{\n{checks}") + &text(&[scaled, &body])
 }

@@ -5,13 +5,15 @@
 //! In the texts `rob_` and `ROB_` stand for the robot's prefix. Each is written where it is called.
 
 const IS_FINITE: &str = include_str!("text/is_finite.c");
+const IS_WITHIN: &str = include_str!("text/is_within.c");
 const UNIT_QUATERNION: &str = include_str!("text/unit_quaternion.c");
 const SIGN: &str = include_str!("text/sign.c");
 const SIGNED: &str = include_str!("text/signed.c");
 const WRAP_ANGLE: &str = include_str!("text/wrap_angle.c");
 /// All, each behind those that it calls, with the name that it is called by.
-const ALL: [(&str, &str); 5] = [
+const ALL: [(&str, &str); 6] = [
     ("is_finite(", IS_FINITE),
+    ("is_within(", IS_WITHIN),
     ("unit_quaternion(", UNIT_QUATERNION),
     ("sign(", SIGN),
     ("signed(", SIGNED),

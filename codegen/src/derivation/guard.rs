@@ -17,8 +17,8 @@ pub struct Guard<'a> {
 /// The kinds of guards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GuardKind {
-    /// Negative: the pose is out of reach.
-    Reach,
+    /// Negative: the pose is out of reach. Near zero compared with this value at home: the leg is singular.
+    Reach(f64),
     /// Near zero compared with this magnitude at home: the leg is singular.
     Leg(f64),
     /// Near zero compared with this magnitude at home: the actuators do not determine the platform's
@@ -43,8 +43,11 @@ impl GuardKind {
     #[must_use]
     pub const fn home(&self) -> Option<f64> {
         match self {
-            Self::Reach | Self::Mass | Self::Closed(_) => None,
-            Self::Leg(home) | Self::Coordinates(home) | Self::Platform { home, .. } => Some(*home),
+            Self::Mass | Self::Closed(_) => None,
+            Self::Reach(home)
+            | Self::Leg(home)
+            | Self::Coordinates(home)
+            | Self::Platform { home, .. } => Some(*home),
         }
     }
 }

@@ -1,18 +1,28 @@
 //! What a function does before all else.
 
+use super::expression::magnitude;
+use crate::float::Float;
 use crate::lowering::Array;
 use crate::model::RobotModel;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// Refuses numbers that are not finite, and scales the
-/// quaternion of a pose to length 1.
+/// Refuses numbers that are not finite or too large.
+#[must_use]
+pub fn range(float: Float, arguments: &[&str]) -> TokenStream {
+    let largest = float.limits().largest;
+    let bounded = arguments.iter().map(|name| {
+        let (value, most) = (format_ident!("{name}"), magnitude(largest.of(name)));
+        quote!((#name, #value, #most))
+    });
+    quote!(::overact::guard::within(&[#(#bounded),*])?;)
+}
+
+/// Refuses numbers that are not finite or too large, and scales the quaternion of a pose to length 1.
 #[must_use]
 pub fn boundary(model: &RobotModel, arguments: &[Array]) -> TokenStream {
-    let named = arguments.iter().map(|argument| {
-        let (name, value) = (&argument.name, format_ident!("{}", argument.name));
-        quote!((#name, #value))
-    });
+    let names: Vec<&str> = arguments.iter().map(|a| a.name.as_str()).collect();
+    let range = range(model.float, &names);
     let platform = model.mechanism.platform.as_ref();
     let has_quaternion = platform.is_some_and(|p| p.motion.has_quaternion());
     let poses = arguments.iter().filter(|a| a.name == "pose");
@@ -21,7 +31,7 @@ pub fn boundary(model: &RobotModel, arguments: &[Array]) -> TokenStream {
         quote!(let #value = &::overact::guard::unit_quaternion(#value, #name)?;)
     });
     quote! {
-        ::overact::guard::finite(&[#(#named),*])?;
+        #range
         #(#unit)*
     }
 }

@@ -153,12 +153,19 @@ impl<'a> Writer<'a> {
     fn guard(&self, value: &Expression, condition: &Condition) -> TokenStream {
         let value = self.tokens(value);
         match condition {
-            Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
+            Condition::Reach { leg, home } => {
+                let home = number(*home, self.float);
+                quote!(::overact::guard::reach(#value, #home, #leg)?;)
+            }
             Condition::Leg { leg, home } => {
                 let home = number(*home, self.float);
                 quote!(::overact::guard::leg(#value, #home, #leg)?;)
             }
             Condition::Mass => quote!(::overact::guard::mass(#value)?;),
+            Condition::Size { most } => {
+                let most = magnitude(*most);
+                quote!(::overact::guard::size(#value, #most)?;)
+            }
             Condition::Closed { leg, within } => {
                 let within = number(*within, self.float);
                 quote!(::overact::guard::closed(#value, #within, #leg)?;)
@@ -286,6 +293,13 @@ pub fn kind(float: Float) -> TokenStream {
         Float::F64 => quote!(::core::primitive::f64),
         Float::F32 => quote!(::core::primitive::f32),
     }
+}
+
+/// A bound of magnitudes, a power of ten: with an exponent in the place of its zeros.
+#[must_use]
+pub fn magnitude(value: f64) -> TokenStream {
+    let literal = format!("{value:e}").parse();
+    literal.unwrap_or_else(|_| internal_error("a bound is no number"))
 }
 
 /// A number that reads back as the same one, rounded to those that are computed with.

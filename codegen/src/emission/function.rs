@@ -290,9 +290,9 @@ fn documentation(
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
     lines.push(if outline.can_fail {
-        " An input that is not finite, a pose out of reach, or a singular configuration.".to_owned()
+        " An input that is not finite or too large, a pose out of reach, or a singular configuration.".to_owned()
     } else {
-        " An input that is not finite.".to_owned()
+        " An input that is not finite or too large.".to_owned()
     });
     lines
 }

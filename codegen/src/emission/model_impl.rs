@@ -1,6 +1,6 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
-use super::{expression, function};
+use super::{boundary, expression, function};
 use crate::derivation::MotionInput;
 use crate::model::RobotModel;
 use overact_core::Function;
@@ -137,17 +137,18 @@ fn pattern(function: Function) -> TokenStream {
 pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let doc = " Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.";
     let kind = expression::kind(model.float);
+    let range = boundary::range(model.float, &["actuators", "start"]);
     if model.is_tree() {
         return quote! {
             #[doc = #doc]
             #[doc = ""]
             #[doc = " # Errors"]
-            #[doc = " An input that is not finite; else none: the pose of a robot without a loop is its joint positions."]
+            #[doc = " An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions."]
             pub fn pose_from_actuators(
                 actuators: &[#kind; Self::ACTUATORS],
                 start: &[#kind; Self::POSE],
             ) -> ::core::result::Result<[#kind; Self::POSE], ::overact::Error> {
-                ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+                #range
                 ::core::result::Result::Ok(*actuators)
             }
         };
@@ -247,12 +248,12 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         #[doc = #doc]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " An input that is not finite, no convergence, or a singular or unreachable configuration on the way."]
+        #[doc = " An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way."]
         pub fn pose_from_actuators(
             actuators: &[#kind; Self::ACTUATORS],
             start: &[#kind; Self::POSE],
         ) -> ::core::result::Result<[#kind; Self::POSE], ::overact::Error> {
-            ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+            #range
             #unit
             #closed
             #body

@@ -3,7 +3,7 @@
 use super::plan::Slot;
 use super::{BLOCK, Failed};
 use crate::lowering::{Condition, Guard};
-use overact_core::SINGULAR;
+use overact_core::limits::DOUBLE;
 use pulp::NullaryFnOnce;
 
 /// The guards, whose values are in `places`, at `count` samples from number `start` on. Lanes beyond the
@@ -83,9 +83,10 @@ impl Condition {
         // Without an early end, so that several values are compared at a time.
         let mut hold = true;
         match self {
-            Self::Reach { .. } => {
+            Self::Reach { home, .. } => {
+                let least = DOUBLE.radicand * home;
                 for value in values {
-                    hold &= *value >= 0.0;
+                    hold &= *value >= least;
                 }
             }
             Self::Mass => {
@@ -93,13 +94,13 @@ impl Condition {
                     hold &= *value > 0.0;
                 }
             }
-            Self::Closed { within, .. } => {
+            Self::Closed { within: most, .. } | Self::Size { most } => {
                 for value in values {
-                    hold &= value.abs() <= *within;
+                    hold &= value.abs() <= *most;
                 }
             }
             Self::Leg { home, .. } | Self::Platform { home, .. } | Self::Coordinates { home } => {
-                let least = SINGULAR * home;
+                let least = DOUBLE.singular * home;
                 for value in values {
                     hold &= value.abs() > least;
                 }

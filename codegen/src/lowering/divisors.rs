@@ -65,7 +65,7 @@ fn is_never_zero(dag: &Dag, node: usize) -> bool {
         guard.value.node() == node
             && !matches!(
                 guard.condition,
-                Condition::Reach { .. } | Condition::Closed { .. }
+                Condition::Reach { .. } | Condition::Closed { .. } | Condition::Size { .. }
             )
     });
     is_guarded || matches!(dag.definition(node), Definition::Constant(_))
@@ -96,9 +96,12 @@ fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
 /// The leg that a condition is about.
 fn leg(condition: &Condition) -> Option<&str> {
     match condition {
-        Condition::Reach { leg } | Condition::Leg { leg, .. } | Condition::Closed { leg, .. } => {
-            Some(leg)
-        }
-        Condition::Platform { .. } | Condition::Coordinates { .. } | Condition::Mass => None,
+        Condition::Reach { leg, .. }
+        | Condition::Leg { leg, .. }
+        | Condition::Closed { leg, .. } => Some(leg),
+        Condition::Platform { .. }
+        | Condition::Coordinates { .. }
+        | Condition::Mass
+        | Condition::Size { .. } => None,
     }
 }

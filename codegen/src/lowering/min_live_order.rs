@@ -9,14 +9,16 @@
 //! To tell what a result costs all has to be seen that is still to be computed for it, so of a large program only the next
 //! results are compared, the fewer the more steps there are.
 
-use super::program::{Operand, Operation, Program};
+use super::program::{Condition, Operand, Operation, Program};
 use std::collections::BTreeSet;
 
 /// The same program in an order in which few values wait for their last use.
 #[must_use]
 pub(crate) fn schedule_min_live(program: &Program) -> Program {
     let mut order = Order::new(program);
+    // Sizes are looked at wherever their values stand: nothing waits for them.
     let guarded = program.guards.iter();
+    let guarded = guarded.filter(|guard| !matches!(guard.condition, Condition::Size { .. }));
     for step in guarded.filter_map(|guard| step(guard.operand)) {
         order.compute(step);
     }

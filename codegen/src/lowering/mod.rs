@@ -6,6 +6,7 @@
 //! | `passes` | that graph | the same values in fewer operations; the list of passes stands there |
 //! | `divisors` | that graph | the same with a guard on all that is divided by |
 //! | `schedule` | that graph | the [`Program`], operands first |
+//! | `magnitudes` | a program | the same with guards that keep its values finite |
 //! | `min_live_order` | a program whose results are written one by one | the same program, ordered for few live values |
 //!
 //! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
@@ -21,6 +22,7 @@ mod dag;
 mod divisors;
 mod lanes;
 mod limits;
+mod magnitudes;
 mod min_live_order;
 mod passes;
 mod program;
@@ -32,6 +34,7 @@ pub use dag::test_states::States;
 pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, OfLegs, Pays, Sums};
 pub(crate) use lanes::{fold, scatter};
 pub use limits::SearchLimits;
+pub(crate) use magnitudes::Magnitudes;
 pub(crate) use min_live_order::schedule_min_live;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 

@@ -203,6 +203,7 @@ impl<'d> Schedule<'d> {
                 Condition::Leg { .. }
                 | Condition::Platform { .. }
                 | Condition::Closed { .. }
+                | Condition::Size { .. }
                 | Condition::Coordinates { .. } => guard.value.positive(),
             };
             let guard = Guard {

@@ -174,7 +174,7 @@ fn output(function: Function, derived: &Derived<'_>) -> Array {
 
 fn guards<'a>(guards: &[Guard<'a>]) -> Vec<GuardedExpr<'a>> {
     let condition = |kind: GuardKind, leg: String| match kind {
-        GuardKind::Reach => Condition::Reach { leg },
+        GuardKind::Reach(home) => Condition::Reach { leg, home },
         GuardKind::Leg(home) => Condition::Leg { leg, home },
         GuardKind::Mass => Condition::Mass,
         GuardKind::Closed(within) => Condition::Closed { leg, within },

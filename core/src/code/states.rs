@@ -14,7 +14,7 @@ super::codes! {
         cause "From the start pose Newton's steps do not arrive at a pose with these actuator positions."
         cure "Start nearer, at the last pose of a motion for instance, and check that the positions can be reached."
     NOT_FINITE 505 "a number that is not finite"
-        cause "An input is NaN or infinite, a quaternion is zero, or a result is too large for a number."
+        cause "An input is NaN, infinite or beyond the range of inputs, a quaternion is zero, or a value is too large for a number."
         cure "Look where the number comes from; a quaternion needs a direction."
     WRONG_SIZE 506 "another number of inputs or elements"
         cause "A function was given another number of inputs, or slices of another length, than it takes."

@@ -48,20 +48,41 @@ impl Failed {
     }
 }
 
-/// The radicand of the legs' inverse kinematics must not be negative.
-/// Else, and for NaN, [`Error::OutOfReach`].
+/// The radicand of the legs' inverse kinematics must be neither negative nor lost in rounding; `home` are its values at
+/// home. Else, and for NaN, [`Error::OutOfReach`] or [`Error::SingularLeg`].
 #[inline(always)]
 pub fn reach<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
     radicand: impl OfLegs<V>,
+    home: &[f64; LEGS],
     legs: &[&'static str; LEGS],
     at: Turn<V, LEGS>,
 ) {
-    let radicands = radicand.of_legs(at.1);
-    if !radicands.every(|radicand| radicand >= 0.0) {
+    let (radicands, homes) = (radicand.of_legs(at.1), row(home, at).0);
+    let mut lane = 0..;
+    let is_reached = |radicand: f64| {
+        let home = homes.lane(lane.next().unwrap_or_default());
+        radicand >= overact_core::limits::DOUBLE.radicand * home
+    };
+    if !radicands.every(is_reached) {
         failed.note(legs, at, &|lane, leg| {
-            guard::reach(radicands.lane(lane), leg)
+            guard::reach(radicands.lane(lane), homes.lane(lane), leg)
         });
+    }
+}
+
+/// A value of the legs must not be larger than `most`. Else, and for NaN, [`Error::Overflow`].
+#[inline(always)]
+pub fn size<V: Vector, const LEGS: usize>(
+    failed: &mut Failed,
+    value: impl OfLegs<V>,
+    most: f64,
+    legs: &[&'static str; LEGS],
+    at: Turn<V, LEGS>,
+) {
+    let values = value.of_legs(at.1);
+    if !values.every(|value| value.abs() <= most) {
+        failed.note(legs, at, &|lane, _| guard::size(values.lane(lane), most));
     }
 }
 

@@ -306,7 +306,7 @@ impl Contract<'_> {
             return Ok(());
         }
         let regular = ask(inputs, width * SAMPLES, "unit quaternions")?;
-        for length in [3.0, 1e-3, 1e-170, 1e170] {
+        for length in [3.0, 1e-3, 1e-170, 1e14] {
             let mut inputs = inputs.to_vec();
             for pose in inputs[at].chunks_mut(size) {
                 pose[size - 4..].iter_mut().for_each(|q| *q *= length);
@@ -453,7 +453,7 @@ fn is_length(answer: &Answer) -> bool {
 }
 
 /// Whether two errors say the same, of the same leg; by how much a condition fails may differ by rounding.
-fn is_alike(one: &SampleError, other: &SampleError) -> bool {
+pub(super) fn is_alike(one: &SampleError, other: &SampleError) -> bool {
     let error = match (one.error, other.error) {
         (Error::OutOfReach { leg }, Error::OutOfReach { leg: other })
         | (Error::SingularLeg { leg, .. }, Error::SingularLeg { leg: other, .. }) => leg == other,

@@ -14,5 +14,6 @@ mod newton_euler;
 mod parasitic;
 mod pose_step;
 mod power;
+mod range;
 mod ranks;
 mod singularities;

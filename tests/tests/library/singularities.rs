@@ -142,8 +142,12 @@ impl<'a> Robot<'a> {
         Ok(match failed {
             Ok(()) => Ok(overact_tests::support::backend::matrix(program, &output)),
             Err(failed) => Err(match &program.guards[failed.guard].condition {
-                Condition::Reach { leg } => Refusal {
+                Condition::Reach { leg, .. } => Refusal {
                     what: leg.clone(),
+                    condition: 0.0,
+                },
+                Condition::Size { .. } => Refusal {
+                    what: "a value that is too large".to_owned(),
                     condition: 0.0,
                 },
                 Condition::Leg { leg, home } => Refusal {

@@ -124,11 +124,14 @@ rob_error rob_partition_of(
     return ROB_OK;
 }
 
-void rob_partition_project(
+rob_error rob_partition_project(
     const rob_partition *ROB_RESTRICT partition,
     double *ROB_RESTRICT inputs,
     int columns)
 {
+    if (!(rob_is_finite(inputs, ROB_DOF * columns))) {
+        return ROB_NOT_FINITE_INPUTS;
+    }
     for (int column = 0; column < columns; column++) {
         double vector[ROB_DOF];
         double solution[ROB_DOF];
@@ -136,8 +139,12 @@ void rob_partition_project(
             vector[row] = inputs[row * columns + column];
         }
         rob_partition_solve(partition, vector, solution);
+        if (!(rob_is_finite(solution, ROB_DOF))) {
+            return ROB_OVERFLOW;
+        }
         for (int row = 0; row < ROB_DOF; row++) {
             inputs[row * columns + column] = solution[row];
         }
     }
+    return ROB_OK;
 }

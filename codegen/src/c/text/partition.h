@@ -26,8 +26,10 @@ rob_error rob_partition_of(
  * @param partition as rob_partition_of writes it
  * @param inputs ROB_DOF rows of `columns` numbers, row by row
  * @param columns how many columns there are
+ * @return 0, or an error: an input that is not finite, or a result that is too large for a number. The inputs that are
+ * behind it are left as they were then.
  */
-void rob_partition_project(
+rob_error rob_partition_project(
     const rob_partition *ROB_RESTRICT partition,
     double *ROB_RESTRICT inputs,
     int columns);

@@ -7,6 +7,10 @@ static rob_error rob_LOOP(const double *actuators, double *pose)
         double largest = 0.0;
         double total = 0.0;
         const rob_error error = rob_FIND(pose, actuators, step);
+        /* A pose that has run away is none that was given. */
+        if ((error == ROB_NOT_FINITE_POSE) || (error == ROB_OUT_OF_RANGE_POSE)) {
+            return ROB_NO_CONVERGENCE;
+        }
         if (error != ROB_OK) {
             return error;
         }

@@ -50,7 +50,8 @@ impl<'a> Robot<'a> {
             }
             guards.extend(radicands.into_iter().map(|value| Guard {
                 value,
-                kind: GuardKind::Reach,
+                // A force has a value where a length vanishes, unless it divides by it.
+                kind: GuardKind::Reach(0.0),
                 leg: leg.name.clone(),
             }));
         }

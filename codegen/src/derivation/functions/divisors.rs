@@ -48,7 +48,7 @@ fn of_multiple<'a>(value: Expr<'a>, guards: &[Guard<'a>]) -> Option<Guard<'a>> {
     let scale = factor.value().abs();
     let known = guards.iter().filter(|guard| guard.value == base);
     let kind = known.filter_map(|guard| match guard.kind {
-        GuardKind::Reach | GuardKind::Closed(_) => None,
+        GuardKind::Reach(_) | GuardKind::Closed(_) => None,
         GuardKind::Mass => Some((GuardKind::Mass, guard)),
         GuardKind::Leg(home) => Some((GuardKind::Leg(home * scale), guard)),
         GuardKind::Coordinates(home) => Some((GuardKind::Coordinates(home * scale), guard)),

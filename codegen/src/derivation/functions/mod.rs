@@ -153,7 +153,7 @@ fn pose_in_closed_form<'a>(
     let found = closed_form(arena, mechanism).ok_or(Underivable::ForwardKinematics)?;
     let guards = found.reach.into_iter().map(|(reach, leg)| Guard {
         value: reach.radicand,
-        kind: GuardKind::Reach,
+        kind: GuardKind::Reach(mechanism.home.value(arena, reach.radicand).abs()),
         leg,
     });
     Ok(Derived {

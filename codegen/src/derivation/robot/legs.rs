@@ -97,9 +97,10 @@ impl<'a> Robot<'a> {
         let conditions = solve_leg(task, &mut self.configuration).ok_or_else(unsolved)?;
         let guards = conditions.into_iter().map(|reach| Guard {
             value: reach.radicand,
-            kind: GuardKind::Reach,
+            kind: GuardKind::Reach(self.at_home(reach.radicand).abs()),
             leg: leg.clone(),
         });
+        let guards: Vec<_> = guards.collect();
         self.guards.extend(guards);
         Ok(())
     }

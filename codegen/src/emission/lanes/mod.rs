@@ -195,7 +195,11 @@ fn tables(lanes: &Lanes) -> TokenStream {
     let homes = homes.enumerate().filter_map(|(at, (guard, homes))| {
         let name = home(at);
         let homes = numbers(homes.clone());
-        matches!(guard.condition, Condition::Leg { .. }).then(|| {
+        matches!(
+            guard.condition,
+            Condition::Leg { .. } | Condition::Reach { .. }
+        )
+        .then(|| {
             quote! {
                 #[doc = " What must not vanish, at home."]
                 static #name: [::core::primitive::f64; #count] = #homes;

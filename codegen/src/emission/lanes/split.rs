@@ -1,7 +1,7 @@
 //! Statements of a program in lanes: those that all legs share, and those of a leg.
 
 use super::{Parts, home, unsuffixed};
-use crate::emission::expression::{Writer, number};
+use crate::emission::expression::{Writer, magnitude, number};
 use crate::float::Float;
 use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
 use crate::writing::statement::{Expression, Pair, Statement};
@@ -94,7 +94,12 @@ impl<'a> Split<'a> {
         let value = self.own_writer.tokens(value);
         match condition {
             Condition::Reach { .. } => {
-                quote!(::overact::lanes::reach(&mut failed, #value, &LEGS, at);)
+                let home = home(at);
+                quote!(::overact::lanes::reach(&mut failed, #value, &#home, &LEGS, at);)
+            }
+            Condition::Size { most } => {
+                let most = magnitude(*most);
+                quote!(::overact::lanes::size(&mut failed, #value, #most, &LEGS, at);)
             }
             Condition::Closed { within, .. } => {
                 let within = number(*within, Float::F64);

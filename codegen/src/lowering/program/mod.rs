@@ -160,10 +160,13 @@ impl Array {
 /// What has to hold for the outputs to mean something.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// The value is not negative, else the pose is out of the leg's reach.
+    /// The value is not negative, else the pose is out of the leg's reach, nor small against `home`, else the leg is
+    /// singular.
     Reach {
         /// Name of the leg.
         leg: String,
+        /// The value at the home configuration; zero if only the sign matters.
+        home: f64,
     },
     /// The value is not small against `home`, else the leg is singular.
     Leg {
@@ -193,6 +196,11 @@ pub enum Condition {
     },
     /// The value is positive, else the mass matrix is not positive definite.
     Mass,
+    /// The value's magnitude is at most this, else values computed from it might overflow.
+    Size {
+        /// The largest magnitude.
+        most: f64,
+    },
 }
 
 impl Condition {

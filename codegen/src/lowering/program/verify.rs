@@ -77,7 +77,9 @@ impl Program {
                 .map_err(|broken| format!("guard {at} is on {broken}"))?;
             if let Condition::Leg { home, .. }
             | Condition::Platform { home, .. }
+            | Condition::Reach { home, .. }
             | Condition::Coordinates { home }
+            | Condition::Size { most: home }
             | Condition::Closed { within: home, .. } = guard.condition
                 && !home.is_finite()
             {

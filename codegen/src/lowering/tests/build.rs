@@ -84,7 +84,7 @@ fn array(name: &str) -> &'static str {
 fn condition(line: &Line) -> Condition {
     let leg = "leg".to_owned();
     match line {
-        Line::Reach(_) => Condition::Reach { leg },
+        Line::Reach(_) => Condition::Reach { leg, home: 0.0 },
         _ => Condition::Leg { leg, home: 1.0 },
     }
 }

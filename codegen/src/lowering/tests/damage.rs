@@ -54,7 +54,10 @@ const DAMAGES: [(&str, Damage); 12] = [
         p.entries[0].operand = Operand::Step(p.steps.len());
     }),
     ("a guard stands on nothing", |p, _| {
-        let condition = Condition::Reach { leg: String::new() };
+        let condition = Condition::Reach {
+            leg: String::new(),
+            home: 0.0,
+        };
         let operand = Operand::Step(p.steps.len());
         p.guards.push(Guard { operand, condition });
     }),

@@ -6,7 +6,8 @@ use super::template::{ARRAY, Template};
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{BodyParameter, Derived, MotionInput, Selection};
 use crate::lowering::{
-    Column, Condition, Elements, Gathered, Lanes, Operand, Operation, Pays, Program, fold, scatter,
+    Column, Condition, Elements, Gathered, Guard, Lanes, Operand, Operation, Pays, Program, fold,
+    scatter,
 };
 use crate::selection::assemble::Assembler;
 use overact_core::{Columns, Function, Input};
@@ -168,8 +169,20 @@ impl Draft<'_> {
             })
             .collect();
         let of_legs = of_legs?;
-        let of_guard = |guard: usize| of_legs.iter().map(|values| values[guard].abs()).collect();
-        Some((0..guards.len()).map(of_guard).collect())
+        let of_guard = |(at, guard): (usize, &Guard)| match guard.condition {
+            // Of which only the sign matters.
+            Condition::Reach { home: 0.0, .. } => vec![0.0; lanes.legs.len()],
+            _ => of_legs.iter().map(|values| values[at].abs()).collect(),
+        };
+        Some(
+            lanes
+                .program
+                .guards
+                .iter()
+                .enumerate()
+                .map(of_guard)
+                .collect(),
+        )
     }
 }
 
@@ -210,7 +223,7 @@ const fn input_of(columns: Columns) -> Input {
 /// What all legs share fails in the first one first. In which leg another guard fails is known when it does.
 fn name_guards(program: &mut Program, first: &str) {
     for guard in &mut program.guards {
-        if let Condition::Reach { leg }
+        if let Condition::Reach { leg, .. }
         | Condition::Leg { leg, .. }
         | Condition::Closed { leg, .. } = &mut guard.condition
         {

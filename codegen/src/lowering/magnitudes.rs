@@ -1,0 +1,353 @@
+//! Bounds of the magnitudes in a program, and guards that keep all values finite.
+//!
+//! Inputs are bounded by [`Largest`](overact_core::limits::Largest), and divisors from below by their guards. From these
+//! follows a bound of each value, as a power of two. It is rough: the bound of a sum is the sum of the bounds, whatever
+//! cancels. Where a bound is beyond the range of the numbers, a guard on the value's size is added, and the bound is that
+//! of the guard from there on. So no value of the program is infinite or NaN unless a guard fails.
+
+use super::program::{Condition, Guard, Operand, Operation, Program};
+use super::{Gathered, Lanes, LegRows, Sums};
+use crate::float::Float;
+use overact_core::Limits;
+
+/// Bounds of magnitudes as powers of two, for numbers of one type.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Magnitudes {
+    limits: Limits,
+    /// Exponent that no value may exceed; roundings have room above it.
+    most: f64,
+    /// What a guard bounds a value to.
+    guarded: f64,
+    /// Exponent below which a divisor counts as unbounded.
+    least: f64,
+}
+
+/// The bound of an element of an input array, as an exponent of two.
+pub(crate) type Bounds<'b> = dyn Fn(usize, usize) -> f64 + 'b;
+
+impl Magnitudes {
+    /// Of programs that compute with these numbers.
+    pub(crate) const fn new(float: Float) -> Self {
+        let (most, guarded, least) = match float {
+            Float::F64 => (1022.0, 1e100, -1000.0),
+            Float::F32 => (126.0, 1e12, -120.0),
+        };
+        Self {
+            limits: float.limits(),
+            most,
+            guarded,
+            least,
+        }
+    }
+
+    /// The bound of an input by the name of its array.
+    pub(crate) fn of_input(&self, array: &str) -> f64 {
+        self.limits.largest.of(array).log2()
+    }
+
+    /// Adds guards to a program. Returns bounds of its entries, whose magnitudes are at most `most_of_entries`.
+    pub(crate) fn guard(
+        &self,
+        program: &mut Program,
+        inputs: &Bounds<'_>,
+        most_of_entries: f64,
+    ) -> Vec<f64> {
+        let mut walk = Walk {
+            magnitudes: *self,
+            program,
+            inputs,
+            upper: Vec::new(),
+            lower: Vec::new(),
+            guards: Vec::new(),
+        };
+        walk.steps();
+        let bounds = walk.entries(most_of_entries);
+        let guards = walk.guards;
+        program.guards.extend(guards);
+        bounds
+    }
+
+    /// Adds guards to the programs of legs side by side.
+    pub(crate) fn guard_lanes(&self, lanes: &mut Lanes, shared: &Bounds<'_>) {
+        let constants: Vec<f64> = (0..lanes.constants.first().map_or(0, Vec::len))
+            .map(|at| {
+                let of_legs = lanes.constants.iter().map(|leg| leg[at].abs());
+                of_legs.fold(0.0, f64::max).log2()
+            })
+            .collect();
+        let names: Vec<String> = lanes
+            .program
+            .inputs
+            .iter()
+            .map(|i| i.name.clone())
+            .collect();
+        let elements = lanes.inputs.clone();
+        let inputs = |array: usize, index: usize| match &elements[array] {
+            super::Elements::Constants => constants[index],
+            // Elements of another leg have the bound of the first one's.
+            super::Elements::Scattered { of, .. } => self.of_input(&names[*of]),
+            super::Elements::InTurn(_) => self.of_input(&names[array]),
+            super::Elements::Shared => shared(array, index),
+        };
+        // What is multiplied has at most half of the exponents.
+        let most = match &lanes.gathered {
+            Gathered::Columns(_) => f64::INFINITY,
+            Gathered::Sums(_) => self.most_of_factors(),
+        };
+        let bounds = self.guard(&mut lanes.program, &inputs, most);
+        lanes.homes.resize(lanes.program.guards.len(), Vec::new());
+        let legs = (lanes.legs.len() as f64).log2();
+        if let Gathered::Sums(sums) = &mut lanes.gathered {
+            self.guard_sums(sums, &bounds, legs);
+        }
+    }
+
+    /// The largest magnitude of numbers whose products are added up.
+    fn most_of_factors(&self) -> f64 {
+        (self.most / 2.0 - 16.0).exp2()
+    }
+
+    /// Adds guards to the program of sums over legs whose parts have these bounds.
+    fn guard_sums(&self, sums: &mut Sums, parts: &[f64], legs: f64) {
+        let (own, rest) = parts.split_at(sums.count);
+        let (shared, rows) = rest.split_at(sums.count);
+        let of_sums: Vec<f64> = own
+            .iter()
+            .zip(shared)
+            .map(|(own, shared)| sum(own + legs, *shared))
+            .collect();
+        let of_rows = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let inputs = |array: usize, index: usize| match array {
+            0 => of_sums[index],
+            _ => of_rows,
+        };
+        let most = match sums.rows {
+            LegRows::Times(_) => self.most_of_factors(),
+            LegRows::None | LegRows::Given(_) => f64::INFINITY,
+        };
+        self.guard(&mut sums.program, &inputs, most);
+    }
+}
+
+/// Goes through the steps of a program.
+struct Walk<'w> {
+    magnitudes: Magnitudes,
+    program: &'w Program,
+    inputs: &'w Bounds<'w>,
+    /// For each step the exponent that bounds it from above.
+    upper: Vec<f64>,
+    /// For each step the exponent that bounds it from below, if it is bounded away from zero.
+    lower: Vec<Option<f64>>,
+    guards: Vec<Guard>,
+}
+
+impl Walk<'_> {
+    fn steps(&mut self) {
+        for at in 0..self.program.steps.len() {
+            let operation = self.program.steps[at].operation;
+            let operand = Operand::Step(at);
+            let mut upper = self.upper_of(operation);
+            // NaN: of an infinite and a vanishing bound.
+            if !(upper <= self.magnitudes.most) {
+                upper = self.guard(operand);
+            }
+            self.upper.push(upper);
+            let lower = self.guarded_from_below(operand);
+            let lower = lower.or_else(|| self.lower_of(operation));
+            let least = self.magnitudes.least;
+            self.lower.push(lower.filter(|lower| *lower >= least));
+        }
+    }
+
+    /// Bounds of the entries, with guards on those that exceed `most`.
+    fn entries(&mut self, most: f64) -> Vec<f64> {
+        let mut bounds = Vec::with_capacity(self.program.entries.len());
+        for entry in &self.program.entries {
+            let mut bound = self.upper(entry.operand);
+            if bound > most.log2() {
+                bound = self.guard_to(entry.operand, most.min(self.magnitudes.guarded));
+                if let Operand::Step(at) = entry.operand {
+                    self.upper[at] = bound;
+                }
+            }
+            bounds.push(bound);
+        }
+        bounds
+    }
+
+    /// Bounds a value by a guard; its exponent.
+    fn guard(&mut self, operand: Operand) -> f64 {
+        self.guard_to(operand, self.magnitudes.guarded)
+    }
+
+    fn guard_to(&mut self, operand: Operand, most: f64) -> f64 {
+        self.guards.push(Guard {
+            operand,
+            condition: Condition::Size { most },
+        });
+        most.log2()
+    }
+
+    fn upper(&self, operand: Operand) -> f64 {
+        match operand {
+            Operand::Constant(value) => value.abs().log2(),
+            Operand::Input { array, index } => (self.inputs)(array, index),
+            Operand::Step(at) => self.upper[at],
+        }
+    }
+
+    fn lower(&self, operand: Operand) -> Option<f64> {
+        match operand {
+            Operand::Constant(value) => (value != 0.0).then(|| value.abs().log2()),
+            Operand::Input { .. } => self.guarded_from_below(operand),
+            Operand::Step(at) => self.lower[at],
+        }
+    }
+
+    /// The exponent that guards bound a value to from below.
+    fn guarded_from_below(&self, operand: Operand) -> Option<f64> {
+        let limits = &self.magnitudes.limits;
+        let own = self.program.guards.iter().filter(|g| g.operand == operand);
+        let bounds = own.filter_map(|guard| {
+            let least = match guard.condition {
+                Condition::Leg { home, .. }
+                | Condition::Platform { home, .. }
+                | Condition::Coordinates { home } => limits.singular * home.abs(),
+                Condition::Reach { home, .. } => limits.radicand * home,
+                Condition::Closed { .. } | Condition::Mass | Condition::Size { .. } => 0.0,
+            };
+            (least > 0.0).then(|| least.log2())
+        });
+        bounds.reduce(f64::max)
+    }
+
+    fn upper_of(&self, operation: Operation) -> f64 {
+        let of = |operand| self.upper(operand);
+        match operation {
+            Operation::Add(a, b) | Operation::Sub(a, b) => sum(of(a), of(b)),
+            Operation::Mul(a, b) => product(of(a), of(b)),
+            Operation::Div(a, b) => match self.lower(b) {
+                Some(least) => of(a) - least,
+                None => f64::INFINITY,
+            },
+            Operation::Neg(a) | Operation::Signed(a, _) => of(a),
+            Operation::Sqrt(a) => of(a) / 2.0,
+            Operation::Sine(_) | Operation::Cosine(_) | Operation::Sign(_) => 0.0,
+            Operation::Atan2(..) => 2.0,
+        }
+    }
+
+    fn lower_of(&self, operation: Operation) -> Option<f64> {
+        match operation {
+            Operation::Mul(a, b) => Some(self.lower(a)? + self.lower(b)?),
+            Operation::Div(a, b) => Some(self.lower(a)? - self.upper(b)),
+            Operation::Neg(a) => self.lower(a),
+            Operation::Sqrt(a) => Some(self.lower(a)? / 2.0),
+            _ => None,
+        }
+    }
+}
+
+/// The exponent of a sum of magnitudes.
+fn sum(a: f64, b: f64) -> f64 {
+    let (larger, smaller) = (a.max(b), a.min(b));
+    if smaller == f64::NEG_INFINITY {
+        return larger;
+    }
+    larger + (smaller - larger).exp2().ln_1p() / std::f64::consts::LN_2
+}
+
+/// The exponent of a product of magnitudes; that of zero is -∞.
+fn product(a: f64, b: f64) -> f64 {
+    if a == f64::NEG_INFINITY || b == f64::NEG_INFINITY {
+        return f64::NEG_INFINITY;
+    }
+    a + b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Magnitudes;
+    use crate::float::Float;
+    use crate::lowering::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
+
+    fn program(operations: &[Operation], guards: Vec<Guard>) -> Program {
+        let array = |name: &str, length: usize| Array {
+            name: name.to_owned(),
+            shape: vec![length],
+        };
+        let step = |operation: &Operation| Step {
+            operation: *operation,
+            name: None,
+            scope: String::new(),
+        };
+        Program {
+            inputs: vec![array("pose", 2)],
+            output: array("result", 1),
+            entries: vec![Entry::positive(Operand::Step(operations.len() - 1))],
+            steps: operations.iter().map(step).collect(),
+            guards,
+            pieces: 0,
+        }
+    }
+
+    /// Steps whose sizes are guarded in a program with inputs up to 1000.
+    fn guarded(float: Float, mut program: Program) -> Vec<Operand> {
+        Magnitudes::new(float).guard(&mut program, &|_, _| 1e3_f64.log2(), f64::INFINITY);
+        let own = program.guards.iter();
+        own.filter(|guard| matches!(guard.condition, Condition::Size { .. }))
+            .map(|guard| guard.operand)
+            .collect()
+    }
+
+    const X: Operand = Operand::Input { array: 0, index: 0 };
+    const Y: Operand = Operand::Input { array: 0, index: 1 };
+
+    fn squares(count: usize) -> Vec<Operation> {
+        let first = [Operation::Mul(X, Y)].into_iter();
+        let squared = |at| Operation::Mul(Operand::Step(at), Operand::Step(at));
+        first.chain((0..count - 1).map(squared)).collect()
+    }
+
+    #[test]
+    fn a_value_that_may_overflow_is_guarded_once() {
+        // 1e6, 1e12, 1e24, 1e48, 1e96, 1e192, 1e384
+        assert_eq!(guarded(Float::F64, program(&squares(6), Vec::new())), []);
+        let found = guarded(Float::F64, program(&squares(7), Vec::new()));
+        assert_eq!(found, [Operand::Step(6)]);
+        // 1e48 is guarded to 1e12, whose square is 1e24.
+        let found = guarded(Float::F32, program(&squares(5), Vec::new()));
+        assert_eq!(found, [Operand::Step(3)]);
+    }
+
+    #[test]
+    fn a_guard_bounds_a_divisor_from_below() {
+        let operations = [Operation::Sub(X, Y), Operation::Div(X, Operand::Step(0))];
+        let guard = |condition| Guard {
+            operand: Operand::Step(0),
+            condition,
+        };
+        let leg = Condition::Leg {
+            leg: String::new(),
+            home: 1.0,
+        };
+        assert_eq!(
+            guarded(Float::F64, program(&operations, vec![guard(leg)])),
+            []
+        );
+        let found = guarded(
+            Float::F64,
+            program(&operations, vec![guard(Condition::Mass)]),
+        );
+        assert_eq!(found, [Operand::Step(1)]);
+    }
+
+    #[test]
+    fn entries_are_bounded_as_asked() {
+        let mut product = program(&[Operation::Mul(X, Y)], Vec::new());
+        let bounds = Magnitudes::new(Float::F64).guard(&mut product, &|_, _| 10.0, 1e4);
+        assert_eq!(bounds, [1e4_f64.log2()]);
+        let most = Condition::Size { most: 1e4 };
+        assert_eq!(product.guards[0].condition, most);
+    }
+}
