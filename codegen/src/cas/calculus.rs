@@ -228,6 +228,7 @@ impl<'b> Substitution<'b> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::CosineSine;
 
     #[test]
     fn derivative_agrees_with_finite_differences() {

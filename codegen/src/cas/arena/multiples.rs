@@ -95,7 +95,7 @@ fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
 mod tests {
     use super::super::super::angle::Angle;
     use super::*;
-    use crate::cas::Direction;
+    use crate::cas::{CosineSine, Direction};
 
     /// c (√3/2 c q) + s (√3/2 s q) is √3/2 q once multiples of constants are looked for.
     #[test]

@@ -65,6 +65,7 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cas::CosineSine;
 
     /// With t₁' = t₁ c + t₂ s and t₂' = t₂ c - t₁ s, k (t₂' c/s + t₁') is k t₂ / s where t₂ is known.
     #[test]
