@@ -152,7 +152,13 @@ mod tests {
     /// A cure that names a key which does not exist is none.
     #[test]
     fn explanations_name_keys_that_there_are() {
-        let manual = ["robots/README.md", "docs/cli.md", "docs/functions.md", "docs/rust.md"].map(|file| read(file).expect(file));
+        let manual = [
+            "robots/README.md",
+            "docs/cli.md",
+            "docs/functions.md",
+            "docs/rust.md",
+        ]
+        .map(|file| read(file).expect(file));
         for one in Code::all() {
             let text = format!("{} `` {}", one.cause, one.cure);
             let quoted = text.split('`').enumerate().filter(|(at, _)| at % 2 == 1);
