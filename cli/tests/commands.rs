@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Bench, number, robot};
+use overact_tier::by_tier;
 use serde_json::Value;
 
 fn same(text: &str) -> String {
@@ -148,7 +149,8 @@ fn usage_errors_have_their_own_code() {
 #[test]
 fn inspect_says_what_a_model_is() {
     let bench = Bench::new();
-    let document = bench.json(&["inspect", &robot("dualv.toml"), "--effort", "quick"]);
+    let effort = by_tier(["none", "quick"]);
+    let document = bench.json(&["inspect", &robot("dualv.toml"), "--effort", effort]);
     assert_eq!(document["robot"], "DualV");
     for (key, size) in [("dof", 3), ("actuators", 4), ("joints", 12)] {
         assert_eq!(document[key], size);

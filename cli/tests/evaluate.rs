@@ -149,10 +149,10 @@ fn columns_and_kept_actuators_are_chosen() {
 #[test]
 fn bad_states_are_told_of() {
     let bench = bench();
-    let dualv = robot("dualv.toml");
+    let planar = robot("planar_3rrr.toml");
     let bad = |function: &str, states: &str| {
         bench.bad(&[
-            "evaluate", &dualv, function, "--states", states, "-o", "out.csv",
+            "evaluate", &planar, function, "--states", states, "-o", "out.csv",
         ])
     };
     assert!(bad("idm_red_platfrm", "states.json").contains("did you mean `idm_red_platform`"));
@@ -173,7 +173,7 @@ fn bad_states_are_told_of() {
     );
     let text = bench.bad(&[
         "evaluate",
-        &dualv,
+        &planar,
         "mass_matrix",
         "--states",
         "named.csv",

@@ -3,6 +3,7 @@
 mod common;
 
 use common::Bench;
+use overact_tier::by_tier;
 use std::{fs, path::Path};
 
 fn model(name: &str) -> String {
@@ -271,7 +272,8 @@ fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
 /// the columns of errors in lengths are told from, Newton's method has to.
 #[test]
 fn an_imported_loop_in_space_is_identified() {
-    for name in ["5bar_linkage_iso3d", "5bar_linkage_iso6d"] {
+    let names = ["5bar_linkage_iso6d", "5bar_linkage_iso3d"];
+    for name in by_tier([&names[..1], &names]) {
         let path = format!("models/example-parallel-robots/{name}/robot.urdf");
         let Some(path) = common::shared(&path) else {
             return;

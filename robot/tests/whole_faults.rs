@@ -151,8 +151,12 @@ fn nothing_of_this_is_said_of_the_robot_as_it_is() {
 #[test]
 fn functions_take_what_was_identified() {
     use overact::{Function, Model};
-    let text = include_str!("../../robots/rx90.toml");
-    let robot = Robot::from_text("rx90.toml", text).expect("the RX90");
+    // A period of its run, and no elimination of parameters: the base parameters are what is compared.
+    let text = include_str!("../../robots/rx90.toml")
+        .replace("duration = \"20 s\"", "duration = \"5 s\"")
+        .replace("decimation = 10", "decimation = 10\nessential = false");
+    assert!(text.contains("\"5 s\"") && text.contains("essential = false"));
+    let robot = Robot::from_text("rx90.toml", &text).expect("the RX90");
     let experiment = robot.experiment().expect("an experiment");
     let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
     let result = Identifier::new(&robot).data(&runs).run().expect("a result");

@@ -7,7 +7,7 @@
 use overact_codegen::Source;
 use overact_tests::support::tree::{self, SKELETON};
 use overact_tests::support::{Failure, whole::against_reference};
-use overact_tier::by_tier;
+use overact_tier::{by_tier, is_full};
 
 const TOLERANCE: f64 = 1e-9;
 /// States of each robot in the default tier and in the full one.
@@ -70,27 +70,28 @@ fn two_at_once() -> Result<(), Failure> {
     compare("two chains", text)
 }
 
-/// Chains on the bodies of a chain that stands on the ground: from it, to it, and in between.
+/// Chains on the bodies of a chain that stands on the ground: from it, and in the full tier to it and in between.
 #[test]
 fn on_a_chain_from_the_ground() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
-    for (from, to) in [("one.2", "e"), ("d", "one.2"), ("one.3", "one.1")] {
+    let ends = [("one.2", "e"), ("d", "one.2"), ("one.3", "one.1")];
+    for (from, to) in by_tier([&ends[..1], &ends]) {
         let text = format!("{SKELETON}{first}{}", drive("two", from, to));
         compare(&format!("from {from} to {to}"), text)?;
     }
     Ok(())
 }
 
-/// Chains on a chain that moves, and on a chain that stands on such a one.
+/// A chain on a chain that moves, and in the full tier a third one on both.
 #[test]
 fn on_a_chain_that_is_carried() -> Result<(), Failure> {
-    let text = format!(
-        "{SKELETON}{}{}{}",
+    let drives = [
         drive("one", "a", "c"),
         drive("two", "one.2", "e"),
         drive("three", "two.3", "one.3"),
-    );
-    compare("a chain on a chain on a chain", text)
+    ];
+    let drives = by_tier([&drives[..2], &drives]).concat();
+    compare("chains on a chain", format!("{SKELETON}{drives}"))
 }
 
 /// A branch of two driven joints on a body of a chain.
@@ -117,15 +118,19 @@ home = {{ turn = "15 deg", slide = "0.1 m" }}
     )
 }
 
-/// Branches on bodies of chains: at the end of all, and one from which a chain starts and another on which it ends.
+/// Branches on bodies of chains: one on which a chain ends, and in the full tier one from which a chain starts and one
+/// that carries no chain.
 #[test]
 fn branches_on_chains() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
-    compare(
-        "a branch",
-        format!("{SKELETON}{first}{}", branch("hand", "one.2")),
-    )?;
-    for (from, to) in [("hand.slide", "e"), ("one.3", "hand.turn")] {
+    if is_full() {
+        compare(
+            "a branch",
+            format!("{SKELETON}{first}{}", branch("hand", "one.2")),
+        )?;
+    }
+    let ends = [("one.3", "hand.turn"), ("hand.slide", "e")];
+    for (from, to) in by_tier([&ends[..1], &ends]) {
         let text = format!(
             "{SKELETON}{first}{}{}",
             branch("hand", "one.2"),

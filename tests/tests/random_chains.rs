@@ -15,7 +15,7 @@ use overact_tier::drawn;
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 const STATES: usize = 3;
 /// Robots in the default tier and in the full one.
-const COUNT: [u64; 2] = [4, 50];
+const COUNT: [u64; 2] = [2, 50];
 /// Draws for each robot, at most.
 const DRAWS: u64 = 20;
 

@@ -37,7 +37,7 @@ const TOLERANCE: f64 = 1e-9;
 const OF_BASE: f64 = 1e-8;
 const STATES: usize = 3;
 /// Mechanisms in the default tier and in the full one, which has to meet every feature and defect.
-const COUNT: [u64; 2] = [32, 208];
+const COUNT: [u64; 2] = [16, 208];
 /// Largest condition number of the model's own partition for its functions to be compared plainly.
 const PLAIN: f64 = 1e3;
 /// Largest joint rate of the path that the power is differentiated along, rad/s and m/s.

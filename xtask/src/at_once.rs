@@ -8,10 +8,19 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-/// Builds all tests and runs them in the tier that the environment asks for. What a binary says is shown
-/// when it ends. Examples in the documentation are not run.
-pub(crate) fn run() -> Result<(), Failure> {
-    let waiting = Mutex::new(binaries()?.into_iter());
+/// Which test binaries run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Binaries {
+    /// All of them.
+    All,
+    /// Those whose tests can differ between the tiers. The others were run by the default tier.
+    OfTier,
+}
+
+/// Builds all tests and runs those of some binaries in the tier that the environment asks for. What a binary says is
+/// shown when it ends. Examples in the documentation are not run.
+pub(crate) fn run(which: Binaries) -> Result<(), Failure> {
+    let waiting = Mutex::new(chosen(which)?.into_iter());
     let failed = Mutex::new(Vec::new());
     let next = || {
         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -39,6 +48,25 @@ pub(crate) fn run() -> Result<(), Failure> {
         return Ok(());
     }
     Err(format!("failed: {}", failed.join(", ")).into())
+}
+
+/// The binaries to run. Those that are left out are named.
+fn chosen(which: Binaries) -> Result<Vec<Binary>, Failure> {
+    let all = binaries()?;
+    if which == Binaries::All {
+        return Ok(all);
+    }
+    let mut chosen = Vec::new();
+    let mut same = Vec::new();
+    for binary in all {
+        if binary.depends_on_tier()? {
+            chosen.push(binary);
+        } else {
+            same.push(binary.name);
+        }
+    }
+    println!("the same in all tiers, not run: {}", same.join(", "));
+    Ok(chosen)
 }
 
 /// Runs a binary and shows what it says; whether it succeeds.

@@ -1,10 +1,15 @@
 //! The test binaries of this workspace.
 
 use crate::Failure;
+use crate::files::read;
 use crate::metadata::cargo;
 use serde_json::Value;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+/// Crates through which a test reads the tier.
+const TIER_READERS: [&str; 2] = ["overact_tests", "overact_tier"];
 
 /// A test binary as cargo has built it.
 pub(crate) struct Binary {
@@ -25,6 +30,32 @@ impl Binary {
             .stdin(Stdio::null());
         command
     }
+
+    /// Whether its tests can differ between the tiers: whether one of its sources names a crate that reads the tier.
+    ///
+    /// The compiler lists the sources in a file next to the binary. A source that can't be read counts as one that
+    /// reads the tier, so that no test is left out by mistake.
+    pub(crate) fn depends_on_tier(&self) -> Result<bool, Failure> {
+        let list = self.file.with_extension("d");
+        let text = fs::read_to_string(&list).map_err(|e| format!("{}: {e}", list.display()))?;
+        let first = text.lines().next().unwrap_or_default();
+        let (_, sources) = first
+            .split_once(": ")
+            .ok_or_else(|| format!("{}: no list of sources", list.display()))?;
+        Ok(names_tier_reader(sources, read))
+    }
+}
+
+/// Whether one of the Rust sources of a list names a crate that reads the tier, or can't be read.
+fn names_tier_reader(sources: &str, read: impl Fn(&str) -> Result<String, Failure>) -> bool {
+    let mut sources = sources
+        .split_whitespace()
+        .filter(|path| path.ends_with(".rs"));
+    sources.any(|path| {
+        read(path).map_or(true, |text| {
+            TIER_READERS.iter().any(|reader| text.contains(reader))
+        })
+    })
 }
 
 /// Builds all tests.
@@ -51,4 +82,24 @@ pub(crate) fn binaries() -> Result<Vec<Binary>, Failure> {
         }
     }
     Ok(binaries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names_tier_reader;
+    use crate::Failure;
+
+    #[test]
+    fn only_sources_that_cannot_read_the_tier_are_the_same_in_all_tiers() {
+        let read = |path: &str| match path {
+            "plain.rs" => Ok("use overact::Model;".to_owned()),
+            "tiered.rs" => Ok("use overact_tier::by_tier;".to_owned()),
+            "supported.rs" => Ok("use overact_tests::support::Failure;".to_owned()),
+            other => Err(Failure::from(format!("no file {other}"))),
+        };
+        assert!(!names_tier_reader("plain.rs robot.toml", read));
+        for sources in ["plain.rs tiered.rs", "supported.rs", "plain.rs missing.rs"] {
+            assert!(names_tier_reader(sources, read), "{sources}");
+        }
+    }
 }

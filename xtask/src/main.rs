@@ -41,6 +41,7 @@ cargo xtask page                build the page for browsers into target/page; sk
 cargo xtask page test           build it and test it in a browser
 cargo xtask release             versions, licences, Rust versions and registry keys of all packages
 cargo xtask tests               all test binaries, one for each processor at a time
+cargo xtask tests of-tier       the same without binaries whose tests are the same in all tiers
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
 
 fn main() -> ExitCode {
@@ -59,7 +60,8 @@ fn main() -> ExitCode {
         ["page"] => page::build(),
         ["page", "test"] => page::test(),
         ["release"] => release::check(),
-        ["tests"] => at_once::run(),
+        ["tests"] => at_once::run(at_once::Binaries::All),
+        ["tests", "of-tier"] => at_once::run(at_once::Binaries::OfTier),
         ["times"] => times::table(None),
         ["times", seconds] => times::table(Some(seconds)),
         _ => {

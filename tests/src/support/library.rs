@@ -5,7 +5,7 @@ use super::expected::Expected;
 use super::{Failure, description, model_with, repository};
 use overact_codegen::mechanism::{JointKind, TwistCoordinate};
 use overact_codegen::{Effort, Request, RobotModel};
-use overact_tier::{by_tier, is_night};
+use overact_tier::{by_tier, is_full, is_night};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock};
 
@@ -68,19 +68,35 @@ macro_rules! library {
     };
 }
 
-/// Robots of the night, each with one of the other tiers that has the same motion: they take a third of the time of
-/// all. Redundant robots of other motions are there in either tier.
-const LARGER_BROTHERS: [(&str, &str); 4] = [
-    ("octopod", "hexapod"),
+/// Robots that only the tier of the night tests, each with a robot of the default tier that has the same motion. They
+/// take a third of the time of all robots.
+const NIGHT_ROBOTS: [(&str, &str); 4] = [
     ("delta_4", "delta"),
+    ("octopod", "hexapod"),
     ("orthoglide", "delta"),
     ("spherical_4rrr", "spherical_3rrr"),
 ];
 
-/// Whether the tier that runs looks at a robot.
+/// Robots that the default tier leaves to the full tier, each with a robot of the default tier that has the same motion.
+/// They take half the time of the remaining robots. The default tier keeps redundant robots of planar, point,
+/// Schoenflies and one-axis motion, and a platform with parasitic motion.
+const FULL_TIER_ROBOTS: [(&str, &str); 7] = [
+    ("ankle_offset", "ankle"),
+    ("exechon", "spatial_3prs"),
+    ("planar_4prr", "dualv"),
+    ("reachy_mini", "hexapod"),
+    ("spatial_3rps", "spatial_3prs"),
+    ("spatial_3rps_ups", "spatial_3prs"),
+    ("tricept_4", "tricept"),
+];
+
+/// Whether the tier that runs tests a robot.
 #[must_use]
 pub fn is_of_the_tier(stem: &str) -> bool {
-    is_night() || LARGER_BROTHERS.iter().all(|(larger, _)| *larger != stem)
+    let has = |robots: &[(&str, &str)]| robots.iter().any(|(name, _)| *name == stem);
+    let is_left_to_night = has(&NIGHT_ROBOTS) && !is_night();
+    let is_left_to_full = has(&FULL_TIER_ROBOTS) && !is_full();
+    !is_left_to_night && !is_left_to_full
 }
 
 /// Names of all descriptions of `robots/`, in order.

@@ -62,13 +62,14 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     pose
 }
 
-/// A displaced pose that the legs allow: of a platform with parasitic motion, one that was brought back onto them.
-fn allowed(mechanism: &Mechanism, number: usize) -> Vec<f64> {
-    if !mechanism.is_parasitic() {
-        return displaced(mechanism, number);
+/// Displaced poses that the legs allow. Those of a platform with parasitic motion are projected onto them.
+fn allowed_poses(mechanism: &Mechanism) -> Vec<Vec<f64>> {
+    if mechanism.is_parasitic() {
+        let states = random_states(mechanism, POSES, 1).into_iter();
+        states.map(|state| state.pose).collect()
+    } else {
+        (0..POSES).map(|at| displaced(mechanism, at)).collect()
     }
-    let states = random_states(mechanism, POSES, 1).into_iter();
-    states.map(|state| state.pose).nth(number).expect("a state")
 }
 
 /// The values of a function without rates for given inputs.
@@ -127,8 +128,7 @@ fn legs_close(name: &str, mechanism: &Mechanism) {
             "{name}: {found} at home, not {home}"
         );
     }
-    for number in 0..POSES {
-        let pose = allowed(mechanism, number);
+    for pose in allowed_poses(mechanism) {
         let found = joints.of_pose(&pose);
         let frame = platform_frame(platform.motion, &pose);
         for (index, leg) in mechanism.legs.iter().enumerate() {
