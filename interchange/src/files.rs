@@ -13,6 +13,9 @@ const MOST_BYTES: u64 = 16 << 20;
 /// Elements of all files of an import together, at most.
 const MOST_ELEMENTS: usize = 500_000;
 
+/// Errors of a file that are kept: each new one is compared with all others.
+const MOST_ERRORS: usize = 1_000;
+
 /// Where something stands: a file, as the number of the order in which it was read, and bytes of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Place {
@@ -125,6 +128,12 @@ impl Files {
             .collect()
     }
 
+    /// All files that were read, in their order.
+    pub(crate) fn sources(&self) -> Vec<Source> {
+        let all = self.read.borrow();
+        all.iter().map(|(_, source, _)| source.clone()).collect()
+    }
+
     /// The line of a place, counted from 1.
     pub(crate) fn line(&self, place: &Place) -> usize {
         self.read.borrow()[place.file].1.position(&place.span).line
@@ -138,7 +147,10 @@ impl Files {
         help: impl Into<String>,
     ) {
         let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(help);
-        self.read.borrow_mut()[place.file].2.push(error);
+        let errors = &mut self.read.borrow_mut()[place.file].2;
+        if errors.len() < MOST_ERRORS {
+            errors.push(error);
+        }
     }
 
     /// Notes errors that were found in a file elsewhere.

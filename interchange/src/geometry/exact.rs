@@ -150,7 +150,10 @@ mod tests {
             let up = direction([0.0, size, 0.0]).expect("a direction");
             assert_eq!([up.x, up.y, up.z], [0.0, 1.0, 0.0], "{size:e}");
             let across = direction([size, 0.0, size]).expect("a direction");
-            assert!((across.x - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-15, "{size:e}");
+            assert!(
+                (across.x - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-15,
+                "{size:e}"
+            );
             let turned = quaternion([size, 0.0, 0.0, size]).expect("a quaternion");
             assert!(turned.matrix().iter().all(|v| v.fract() == 0.0), "{turned}");
         }

@@ -7,6 +7,7 @@ mod equality;
 mod include;
 
 use crate::{
+    bounds,
     files::Files,
     geometry::exact,
     model::{Model, Pose},
@@ -20,6 +21,7 @@ use std::collections::BTreeMap;
 /// Reads a robot; what is wrong is noted in the files.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let root = include::whole(files, file)?;
+    bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("model").unwrap_or("robot"));
     let reader = Reader {
         files,

@@ -193,7 +193,17 @@ mod tests {
         assert_eq!(of("D3**2 + 3*(RL4 - 1) - 1e-1"), Ok(0.25 + 3.0 - 0.1));
         assert_eq!(of("2^-1*atan2(0, -1)"), Ok(std::f64::consts::FRAC_PI_2));
         assert_eq!(of("D4"), Err(Fault::Unknown("D4".to_owned())));
-        for wrong in ["", "(1", "1 2", "1/0", "sin()", "{1}", &"(".repeat(1000), &"1^".repeat(50_000), &"-(".repeat(50_000)] {
+        for wrong in [
+            "",
+            "(1",
+            "1 2",
+            "1/0",
+            "sin()",
+            "{1}",
+            &"(".repeat(1000),
+            &"1^".repeat(50_000),
+            &"-(".repeat(50_000),
+        ] {
             assert_eq!(of(wrong), Err(Fault::Unreadable), "{wrong}");
         }
         assert_eq!(symbols("th1 + pi/2 - sin(D3)*th1"), ["D3", "th1"]);
