@@ -19,11 +19,12 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut mechanism = plain(description);
     let mut errors = Diagnostics::new();
-    check_actuators(description, &mechanism, &mut errors);
     let is_too_large = check_sizes(description, &mut errors);
     if is_too_large {
+        // Geometry of so many joints takes more time than anybody waits for.
         return Err(errors);
     }
+    check_actuators(description, &mechanism, &mut errors);
     let mut rough = rough_home(description);
     match mechanism.is_parasitic() {
         // A rough pose may be none that the legs allow: it is brought onto them.

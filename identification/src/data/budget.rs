@@ -1,6 +1,6 @@
 //! How much a packed file may unpack to: a few megabytes may hold as many gigabytes of zeros.
 
-use std::io::Read;
+use std::io::{Read, Take};
 
 /// Bytes that a file may unpack to beyond its own size.
 const UNPACKED: u64 = 1 << 28;
@@ -19,6 +19,12 @@ impl Budget {
         }
     }
 
+    /// A budget of so many bytes.
+    #[cfg(test)]
+    pub(super) const fn with(left: u64) -> Self {
+        Self { left }
+    }
+
     /// Takes so many bytes from the budget.
     ///
     /// # Errors
@@ -28,13 +34,26 @@ impl Budget {
         Ok(())
     }
 
+    /// An input that ends where nothing is left; [`settle`](Self::settle) takes what was read of it.
+    pub(super) fn limited<R: Read>(&self, input: R) -> Take<R> {
+        input.take(self.left + 1)
+    }
+
+    /// Takes what was read of a limited input.
+    ///
+    /// # Errors
+    /// A sentence, if it was longer than what was left.
+    pub(super) fn settle<R>(&mut self, input: &Take<R>) -> Result<(), String> {
+        self.take(self.left + 1 - input.limit())
+    }
+
     /// Reads to the end.
     ///
     /// # Errors
     /// A sentence, if the input is broken or longer than what is left.
     pub(super) fn unpack(&mut self, input: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
-        let read = input.take(self.left + 1).read_to_end(&mut bytes);
+        let read = self.limited(input).read_to_end(&mut bytes);
         read.map_err(|_| String::from("it is broken"))?;
         self.take(bytes.len() as u64)?;
         Ok(bytes)
@@ -57,7 +76,9 @@ mod tests {
         let mut budget = Budget::of_file(&[]);
         assert!(budget.take(UNPACKED - 1).is_ok());
         assert_eq!(budget.unpack(&[7_u8][..]), Ok(vec![7]));
-        let refused = budget.unpack(std::io::repeat(0)).expect_err("nothing is left");
+        let refused = budget
+            .unpack(std::io::repeat(0))
+            .expect_err("nothing is left");
         assert!(refused.contains("256 MB"), "{refused}");
         assert!(budget.take(1).is_err());
     }
