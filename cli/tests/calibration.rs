@@ -127,3 +127,38 @@ fn an_encoder_that_is_off_is_calibrated_once_and_for_all() {
     }
     assert_eq!(cases, 2);
 }
+
+/// Every identification that an option asks for, and the search for exciting runs, end with a result or an error of
+/// the input: all robots of the library in the full tier, those without a platform in every tier.
+#[test]
+fn no_robot_of_the_library_ends_in_a_defect() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .expect("the library")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .collect();
+    files.sort();
+    let is_small = |path: &std::path::PathBuf| path.ends_with("four_bar.toml");
+    files.retain(|path| is_full() || is_small(path));
+    assert!(!files.is_empty());
+    let bench = Bench::new();
+    for file in &files {
+        let file = file.to_str().expect("UTF-8");
+        for words in [
+            &["identify", file, "--calibrate"][..],
+            &["identify", file, "--calibrate=offsets"],
+            &["identify", file, "--calibrate=all"],
+            &["identify", file, "--gains"],
+            &["identify", file, "--gravity-direction"],
+            &["excite", file, "--time", "1"],
+        ] {
+            let outcome = bench.run(words);
+            assert!(
+                matches!(outcome.code, Some(0 | 1 | 3)),
+                "{words:?}: {}",
+                outcome.err
+            );
+        }
+    }
+}

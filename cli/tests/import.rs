@@ -284,3 +284,31 @@ fn an_imported_loop_in_space_is_identified() {
         assert!(said.contains("zz_"), "{said}");
     }
 }
+
+#[test]
+fn a_description_that_check_refuses_is_not_written() {
+    let bench = Bench::new();
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>"
+        )
+    };
+    let joint = |at: usize| {
+        let (name, before) = (format!("l{at}"), format!("l{}", at - 1));
+        format!(
+            "{}<joint name='j{at}' type='revolute'><parent link='{before}'/><child link='{name}'/></joint>",
+            link(&name)
+        )
+    };
+    let joints: String = (1..=101).map(joint).collect();
+    bench.write(
+        "long.urdf",
+        &format!("<robot name='long'><link name='l0'/>{joints}</robot>"),
+    );
+    let said = bench.bad(&["import", "long.urdf", "-o", "long.toml"]);
+    assert!(
+        said.contains("OA209") && said.contains("long.urdf"),
+        "{said}"
+    );
+    assert_eq!(bench.files(), ["long.urdf"]);
+}

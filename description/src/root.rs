@@ -12,6 +12,7 @@ use crate::robot::{chain, leg, platform, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_exact::{Number, Ratio};
+use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
 
 /// Words that cannot name a type.
@@ -387,30 +388,31 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
 
 /// Leg and joint names are joined by underscores, so two bodies can come by the same name.
 fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
-    let mut names: Vec<&str> = Vec::new();
+    let joined = |leg: &Leg, joint: &crate::robot::model::Joint| {
+        format!("{}_{}", joint.name.value, leg.name.value)
+    };
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut legs_by_name: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for leg in robot.legs {
+        *counts.entry(&leg.name.value).or_default() += 1;
         for joint in &leg.joints {
-            let repeated = robot
-                .legs
-                .iter()
-                .filter(|other| other.name.value == leg.name.value)
-                .count()
-                > 1;
-            let name = format!("{}_{}", joint.name.value, leg.name.value);
-            let clash = robot.legs.iter().any(|other| {
-                let same = |j: &crate::robot::model::Joint| {
-                    format!("{}_{}", j.name.value, other.name.value) == name
-                };
-                other.name.value != leg.name.value && other.joints.iter().any(same)
-            });
-            if clash && !repeated && !names.contains(&leg.name.value.as_str()) {
-                let message = format!("another leg's joint is also called `{name}`");
-                let diagnostic = Diagnostic::new(Code::SAME_NAME, message, leg.name.span.clone());
-                table
-                    .context
-                    .report(diagnostic.help("choose names without underscores"));
-                names.push(&leg.name.value);
-            }
+            let legs = legs_by_name.entry(joined(leg, joint)).or_default();
+            legs.insert(&leg.name.value);
+        }
+    }
+    // Legs of the same name are an error of their own.
+    for leg in robot
+        .legs
+        .iter()
+        .filter(|leg| counts[leg.name.value.as_str()] == 1)
+    {
+        let mut names = leg.joints.iter().map(|joint| joined(leg, joint));
+        if let Some(name) = names.find(|name| legs_by_name[name].len() > 1) {
+            let message = format!("another leg's joint is also called `{name}`");
+            let diagnostic = Diagnostic::new(Code::SAME_NAME, message, leg.name.span.clone());
+            table
+                .context
+                .report(diagnostic.help("choose names without underscores"));
         }
     }
 }

@@ -306,3 +306,52 @@ fn numpys_own_files_have_the_same_numbers() {
     }
     assert!(Path::new(folder.path()).exists());
 }
+
+#[test]
+fn arrays_without_numbers_are_read_whatever_their_other_size() {
+    for (shape, order) in [
+        ("(0, 1000000000000000)", "False"),
+        ("(0, 1000000000000000)", "True"),
+        ("(1000000000000000, 0)", "False"),
+    ] {
+        let file = npy("<f8", order, shape, &[]);
+        assert!(
+            log("a.npy", &file, &mapping("array", "array")).is_err(),
+            "{shape}"
+        );
+    }
+}
+
+#[test]
+fn members_of_an_archive_are_limited_together() {
+    let member = npy("<f8", "False", "(131072,)", &doubles(&[0.0; 131_072]));
+    let one = zip(&[("t.npy", member)]);
+    // The list of members names the same bytes 300 times.
+    let start = one
+        .windows(4)
+        .rposition(|bytes| bytes == b"PK\x01\x02")
+        .expect("a list");
+    let end = one
+        .windows(4)
+        .rposition(|bytes| bytes == b"PK\x05\x06")
+        .expect("an end");
+    let count = 300_u16;
+    let mut file = one[..start].to_vec();
+    file.extend(one[start..end].repeat(usize::from(count)));
+    let mut tail = one[end..].to_vec();
+    tail[8..10].copy_from_slice(&count.to_le_bytes());
+    tail[10..12].copy_from_slice(&count.to_le_bytes());
+    file.extend(tail);
+    let error = log("a.npz", &file, &mapping("t", "t")).expect_err("too large");
+    assert!(
+        error.contains("unpacked it has more than 256 MB"),
+        "{error}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_are_no_logs() {
+    let error = read(Path::new("/dev/zero"), &mapping("q", "tau"), false).expect_err("no file");
+    assert!(error.to_string().contains("no regular file"), "{error}");
+}

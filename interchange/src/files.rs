@@ -2,13 +2,19 @@
 
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 use std::{
-    cell::RefCell,
-    fs, io,
+    cell::{Cell, RefCell},
+    fs::File,
+    io::{self, Read},
     path::{Path, PathBuf},
 };
 
-/// Largest file that is read, bytes. Meshes stand in files of their own, which are never opened.
-const LARGEST: u64 = 64 << 20;
+/// Bytes of all files of an import together, at most. Meshes are in files of their own, which are never opened.
+const MOST_BYTES: u64 = 16 << 20;
+/// Elements of all files of an import together, at most.
+const MOST_ELEMENTS: usize = 500_000;
+
+/// Errors of a file that are kept: each new one is compared with all others.
+const MOST_ERRORS: usize = 1_000;
 
 /// Where something stands: a file, as the number of the order in which it was read, and bytes of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,16 +30,35 @@ pub(crate) struct Place {
 pub struct Errors(pub Vec<(Source, Diagnostics)>);
 
 /// The files of one import and the errors that were found in them so far.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Files {
     read: RefCell<Vec<(PathBuf, Source, Diagnostics)>>,
+    /// Bytes that may still be read.
+    bytes_left: Cell<u64>,
+    /// Elements that may still be read.
+    elements_left: Cell<usize>,
+}
+
+impl Default for Files {
+    fn default() -> Self {
+        Self {
+            read: RefCell::default(),
+            bytes_left: Cell::new(MOST_BYTES),
+            elements_left: Cell::new(MOST_ELEMENTS),
+        }
+    }
 }
 
 impl Files {
     /// Reads a file; `None` after an error, which is noted at the place that names the file.
     pub(crate) fn read(&self, path: &Path, named_at: Option<&Place>) -> Option<usize> {
-        let (text, error) = match read(path) {
-            Ok(text) => (text, None),
+        let is_included = named_at.is_some();
+        let (text, error) = match read(path, is_included, self.bytes_left.get()) {
+            Ok(text) => {
+                let left = self.bytes_left.get().saturating_sub(text.len() as u64);
+                self.bytes_left.set(left);
+                (text, None)
+            }
             Err(error) => (String::new(), Some(error)),
         };
         let name = path.display().to_string();
@@ -55,6 +80,17 @@ impl Files {
             return None;
         }
         Some(at)
+    }
+
+    /// Elements that may still be read.
+    pub(crate) fn elements_left(&self) -> usize {
+        self.elements_left.get()
+    }
+
+    /// Counts elements that were read.
+    pub(crate) fn count_elements(&self, count: usize) {
+        let left = self.elements_left.get().saturating_sub(count);
+        self.elements_left.set(left);
     }
 
     /// The text of a file.
@@ -92,6 +128,12 @@ impl Files {
             .collect()
     }
 
+    /// All files that were read, in their order.
+    pub(crate) fn sources(&self) -> Vec<Source> {
+        let all = self.read.borrow();
+        all.iter().map(|(_, source, _)| source.clone()).collect()
+    }
+
     /// The line of a place, counted from 1.
     pub(crate) fn line(&self, place: &Place) -> usize {
         self.read.borrow()[place.file].1.position(&place.span).line
@@ -105,7 +147,10 @@ impl Files {
         help: impl Into<String>,
     ) {
         let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(help);
-        self.read.borrow_mut()[place.file].2.push(error);
+        let errors = &mut self.read.borrow_mut()[place.file].2;
+        if errors.len() < MOST_ERRORS {
+            errors.push(error);
+        }
     }
 
     /// Notes errors that were found in a file elsewhere.
@@ -147,11 +192,17 @@ impl Files {
     }
 }
 
-fn read(path: &Path) -> io::Result<String> {
-    let size = fs::metadata(path)?.len();
-    if size > LARGEST {
-        let message = format!("{size} bytes, more than {LARGEST}");
+/// Reads a text of at most `most` bytes. A file that another one includes has to be a regular one: a device may have no
+/// end, and a pipe may keep its reader waiting.
+fn read(path: &Path, is_included: bool, most: u64) -> io::Result<String> {
+    if is_included && !path.metadata()?.is_file() {
+        return Err(io::Error::other("it is no regular file"));
+    }
+    let mut text = String::new();
+    File::open(path)?.take(most + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > most {
+        let message = format!("the files of a robot may have {MOST_BYTES} bytes together");
         return Err(io::Error::other(message));
     }
-    fs::read_to_string(path)
+    Ok(text)
 }

@@ -7,15 +7,20 @@ use crate::{
         network::Network,
         simple,
     },
+    bounds,
     experiment::{self, Experiment},
     files::{Errors, Files},
     mjcf,
     model::Model,
     options::Options,
+    origins::Origins,
     par,
     plan::Plan,
-    sdf, urdf, writing, xml,
+    sdf, urdf,
+    writing::{self, Written},
+    xml,
 };
+use overact_description::diagnostic::Diagnostics;
 use std::path::{Path, PathBuf};
 
 /// A description that was made of a file.
@@ -25,29 +30,43 @@ pub struct Imported {
     pub text: String,
     /// All files that were read.
     pub inputs: Vec<PathBuf>,
+    /// What the parts of the text come from.
+    origins: Origins,
 }
 
-/// Makes a description of a robot's file.
+impl Imported {
+    /// The errors of the description in terms of the file that it was made of: each at its joint, or of the file as a
+    /// whole, with the option of the import that helps.
+    #[must_use]
+    pub fn located(&self, errors: &Diagnostics) -> Errors {
+        self.origins.located(errors)
+    }
+}
+
+/// Makes a description of a robot's file. Whether it is valid is not known before it has been checked:
+/// `overact_robot::import` does both.
 ///
 /// # Errors
 /// All that is wrong with the file, each at its line, or what of it can't be said.
 pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
     let files = Files::default();
-    let text = described(&files, path, options);
-    match text.filter(|_| files.is_clean()) {
-        Some(text) => Ok(Imported {
+    let described = described(&files, path, options);
+    match described.filter(|_| files.is_clean()) {
+        Some((text, origins)) => Ok(Imported {
             text,
             inputs: files.paths(),
+            origins,
         }),
         None => Err(files.into_errors()),
     }
 }
 
-fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
+fn described(files: &Files, path: &Path, options: &Options) -> Option<(String, Origins)> {
     let (model, _) = model(files, path, options)?;
     let robot = Robot::new(files, &model, options)?;
     let designed = experiment::design(&robot.network, &robot.layout, &robot.plan);
-    Some(robot.toml(&designed, path, options))
+    let Written { text, joints } = robot.toml(&designed, path, options);
+    Some((text, Origins::new(files, robot.network.model, joints)))
 }
 
 /// The format of a robot's file.
@@ -67,6 +86,7 @@ pub enum Format {
 pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Model, Format)> {
     let file = files.read(path, None)?;
     let (mut model, format) = read(files, file, options)?;
+    bounds::check(files, &model)?;
     choose(files, &mut model, options)?;
     simple::drop_closures_on_one_body(&mut model);
     if !model.closures.is_empty() {
@@ -108,7 +128,7 @@ impl<'m> Robot<'m> {
         designed: &Result<Experiment, String>,
         path: &Path,
         options: &Options,
-    ) -> String {
+    ) -> Written {
         let source = path
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());

@@ -4,13 +4,16 @@
 //! | stage | from | to |
 //! |---|---|---|
 //! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
+//! | `bounds` | the model | its numbers, if a robot may have them |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
 //! | `experiment` | the closed robot | motions inside the limits of its joints |
 //! | `writing` | all of it | TOML with a comment at each choice |
+//! | `origins` | errors of the description | errors of the file |
 //! | `export` | the file and parameters | the file with these parameters |
 
 mod assembly;
+mod bounds;
 mod experiment;
 mod export;
 mod files;
@@ -20,6 +23,7 @@ mod import;
 mod mjcf;
 mod model;
 mod options;
+mod origins;
 mod par;
 mod plan;
 mod sdf;

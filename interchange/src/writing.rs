@@ -12,7 +12,15 @@ use crate::{
     options::Options,
     plan::{Joint, Leg, Plan, word},
 };
+use overact_description::diagnostic::Span;
 use std::fmt::Write as _;
+
+/// A description, and where its joints are in it.
+pub(crate) struct Written {
+    pub(crate) text: String,
+    /// Bytes of the text and the joint of the model that they are about.
+    pub(crate) joints: Vec<(Span, usize)>,
+}
 
 /// The description.
 pub(crate) fn toml(
@@ -21,7 +29,7 @@ pub(crate) fn toml(
     designed: &Result<Experiment, String>,
     source: &str,
     options: &Options,
-) -> String {
+) -> Written {
     let model = network.model;
     let mut text = String::new();
     let name = options.name.as_deref().unwrap_or(&model.name);
@@ -49,15 +57,16 @@ pub(crate) fn toml(
     let _ = writeln!(text, "source = \"{}\"", quoted(source));
     let gravity: Vec<String> = model.gravity.iter().map(|g| decimal(*g)).collect();
     let _ = writeln!(text, "gravity = [{}]", gravity.join(", "));
+    let mut joints = Vec::new();
     for leg in &plan.legs {
-        shape(&mut text, leg);
+        shape(&mut text, leg, &mut joints);
     }
     for leg in &plan.legs {
         place(&mut text, leg);
     }
     experiment::toml(&mut text, designed);
-    values(&mut text, plan);
-    text
+    values(&mut text, plan, &mut joints);
+    Written { text, joints }
 }
 
 /// The choices of the user on which names of parameters depend; none where there are none.
@@ -91,7 +100,7 @@ fn given(options: &Options) -> Option<String> {
     (!words.is_empty()).then(|| format!("`{}`", words.join(" ")))
 }
 
-fn shape(text: &mut String, leg: &Leg) {
+fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
     text.push('\n');
     for line in &leg.comment {
         comment(text, line);
@@ -108,7 +117,9 @@ fn shape(text: &mut String, leg: &Leg) {
         let _ = writeln!(text, "base = {{ {} }}", parts.join(", "));
     }
     for joint in &leg.joints {
+        let start = text.len();
         self::joint(text, &leg.name, joint);
+        joints.extend(joint.of.map(|of| (start..text.len(), of)));
     }
     if let Some(end) = &leg.end {
         let _ = writeln!(text, "\n[leg.{}.end]", leg.name);
@@ -242,7 +253,7 @@ fn place(text: &mut String, leg: &Leg) {
 }
 
 /// Values of the file's masses, inertias and friction: those of the virtual robot, and the prior.
-fn values(text: &mut String, plan: &Plan) {
+fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     let single = plan.legs.len() == 1;
     let (mut lines, mut impossible) = (Vec::new(), Vec::new());
     for leg in &plan.legs {
@@ -277,7 +288,8 @@ fn values(text: &mut String, plan: &Plan) {
                 };
                 let shown = fine(*value, scale);
                 let is_prior = believable::is_believable(joint, symbol);
-                lines.push((is_prior, format!("{symbol}_{}{of} = {shown}", joint.name)));
+                let line = format!("{symbol}_{}{of} = {shown}", joint.name);
+                lines.push((is_prior, line, joint.of));
             }
         }
     }
@@ -285,8 +297,14 @@ fn values(text: &mut String, plan: &Plan) {
         return;
     }
     text.push_str("\n# What the file says of masses, inertias and friction: the virtual robot's,\n[experiment.parameters]\n");
-    for (_, line) in lines.iter().filter(|(_, line)| !line.ends_with(" = 0")) {
+    let mut write = |text: &mut String, line: &str, of: Option<usize>| {
+        let start = text.len();
         let _ = writeln!(text, "{line}");
+        joints.extend(of.map(|of| (start..text.len(), of)));
+    };
+    let known = lines.iter().filter(|(_, line, _)| !line.ends_with(" = 0"));
+    for (_, line, of) in known {
+        write(text, line, *of);
     }
     text.push_str("\n# and what is believed before data speak.\n");
     if !impossible.is_empty() {
@@ -298,8 +316,8 @@ fn values(text: &mut String, plan: &Plan) {
         comment(text, &note);
     }
     text.push_str("[prior.values]\n");
-    for (_, line) in lines.into_iter().filter(|(is_prior, _)| *is_prior) {
-        let _ = writeln!(text, "{line}");
+    for (_, line, of) in lines.into_iter().filter(|(is_prior, ..)| *is_prior) {
+        write(text, &line, of);
     }
 }
 

@@ -3,10 +3,14 @@
 
 use crate::files::{Files, Place};
 
-/// Elements within each other.
-const DEPTH: usize = 400;
-/// Elements, attributes and texts of a file.
-const NODES: u32 = 2_000_000;
+/// Elements within each other, also those of included files.
+pub(crate) const DEPTH: usize = 400;
+/// Attributes of an element, at most.
+const MOST_ATTRIBUTES: usize = 200;
+/// Attributes of an element before they are looked at: the parser compares each with all others.
+const PARSED_ATTRIBUTES: usize = 5_000;
+/// Declarations of namespaces, which each element inherits.
+const MOST_NAMESPACES: usize = 1_000;
 
 /// An element.
 #[derive(Debug, Clone)]
@@ -27,9 +31,12 @@ pub(crate) struct Element {
 /// them.
 pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element> {
     let text = files.text(file);
+    check_tags(files, file, &text)?;
+    let most = files.elements_left();
     let options = roxmltree::ParsingOptions {
         allow_dtd: false,
-        nodes_limit: NODES,
+        // Elements, and the texts and comments between them.
+        nodes_limit: u32::try_from(3 * most + 3).unwrap_or(u32::MAX),
         ..roxmltree::ParsingOptions::default()
     };
     let document = match roxmltree::Document::parse_with_options(&text, options) {
@@ -40,7 +47,8 @@ pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element
                 roxmltree::Error::DtdDetected => {
                     "take the document type and its entities out: write what they stand for"
                 }
-                _ => "the file has to be well-formed XML of at most two million elements",
+                roxmltree::Error::NodesLimitReached => "describe the robot in fewer elements",
+                _ => "the file has to be well-formed XML",
             };
             files.report(
                 &place,
@@ -50,13 +58,59 @@ pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element
             return None;
         }
     };
+    let elements = document.descendants().filter(roxmltree::Node::is_element);
+    let count = elements.clone().count();
+    if count > most {
+        let place = Place { file, span: 0..1 };
+        let help = "describe the robot in fewer elements";
+        files.report(&place, "the files have too many elements", help);
+        return None;
+    }
+    files.count_elements(count);
+    for own in elements.filter(|own| own.attributes().len() > MOST_ATTRIBUTES) {
+        let start = own.range().start;
+        let place = Place {
+            file,
+            span: start..start + 1,
+        };
+        let name = own.tag_name().name();
+        let message = format!("`{name}` has more than {MOST_ATTRIBUTES} attributes");
+        files.report(&place, message, "no element of a robot has so many");
+        return None;
+    }
     let found = element(document.root_element(), file, skip, 0);
     if found.is_none() {
-        let place = Place { file, span: 0..1 };
-        let message = format!("elements stand in each other more than {DEPTH} deep");
-        files.report(&place, message, "describe the robot in parts");
+        too_deep(files, &Place { file, span: 0..1 });
     }
     found
+}
+
+/// Reports elements that are within each other more than [`DEPTH`] deep.
+pub(crate) fn too_deep(files: &Files, place: &Place) {
+    let message = format!("elements are within each other more than {DEPTH} deep");
+    files.report(place, message, "describe the robot in parts");
+}
+
+/// Refuses tags with more attributes, and files with more namespaces, than the parser reads in a short time.
+fn check_tags(files: &Files, file: usize, text: &str) -> Option<()> {
+    let help = "no element of a robot has so many";
+    let mut start = 0;
+    for part in text.split('<') {
+        if part.bytes().filter(|byte| *byte == b'=').count() > PARSED_ATTRIBUTES {
+            let span = start..start + 1;
+            let message = format!("a tag has more than {PARSED_ATTRIBUTES} attributes");
+            files.report(&Place { file, span }, message, help);
+            return None;
+        }
+        start += part.len() + 1;
+    }
+    if text.matches("xmlns").count() > MOST_NAMESPACES {
+        let message = format!("the file declares more than {MOST_NAMESPACES} namespaces");
+        let place = Place { file, span: 0..1 };
+        files.report(&place, message, "take the declarations out");
+        return None;
+    }
+    Some(())
 }
 
 /// The byte of a line and column.

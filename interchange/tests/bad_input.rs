@@ -211,3 +211,133 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
     let said = errors.0[0].1.iter().map(|error| error.message.clone());
     assert!(said.collect::<String>().contains("can't be read"));
 }
+
+#[test]
+fn axes_of_any_length_have_the_direction_of_short_ones() {
+    let model = |axis: &str| {
+        let text =
+            two_links("revolute", "").replace("</joint>", &format!("<axis xyz='{axis}'/></joint>"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("robot.urdf");
+        fs::write(&file, text).expect("a file");
+        import(&file, &Options::default()).expect("a robot").text
+    };
+    let short = model("0 1 0");
+    for long in ["0 1e155 0", "0 1e160 0", "0 1e160 1", "0 1e308 0"] {
+        assert_eq!(model(long), short, "{long}");
+    }
+}
+
+#[test]
+fn numbers_and_robots_out_of_bounds_are_refused() {
+    let text = two_links("revolute", "");
+    let far = text.replace("<mass", "<origin xyz='1e200 0 0'/><mass");
+    let said = refused("robot.urdf", &far);
+    assert!(
+        said.starts_with("3: `b` has a number beyond 1e15"),
+        "{said}"
+    );
+    let placed = text.replace("</joint>", "<origin xyz='0 0 -1e100'/></joint>");
+    assert!(refused("robot.urdf", &placed).contains("`b` has a number beyond"));
+    let damped = text.replace("</joint>", "<dynamics damping='1e300'/></joint>");
+    assert!(refused("robot.urdf", &damped).starts_with("4: the joint `j` has a number"));
+    let chain = |count: usize| {
+        let one = |at: usize| {
+            format!(
+                "<link name='l{at}'/><joint name='k{at}' type='revolute'><parent link='l{}'/><child link='l{at}'/></joint>",
+                at - 1
+            )
+        };
+        let all: String = (1..=count).map(one).collect();
+        format!("<robot name='r'><link name='l0'/>{all}</robot>")
+    };
+    assert!(refused("robot.urdf", &chain(201)).contains("201 joints that move, more than 200"));
+    assert!(refused("robot.urdf", &chain(2001)).contains("2001 joints, more than 2000"));
+}
+
+#[test]
+fn a_joint_that_follows_with_the_factor_zero_is_refused() {
+    let more = "<link name='c'/><joint name='k' type='revolute'><parent link='b'/><child link='c'/>\n<mimic joint='j' multiplier='0'/></joint>";
+    let said = refused("robot.urdf", &two_links("revolute", more));
+    assert!(
+        said.starts_with("6: the joint `k` follows another with the factor 0"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_is_nested_without_end_is_refused() {
+    let table = "NL = 1\nNJ = 1\nNF = 1\nant = {0}\nsigma = {0}\nb = {0}\nd = {0}\nr = {0}\ngamma = {0}\ntheta = {t1}\n";
+    for deep in [
+        "1^".repeat(100_000),
+        "(".repeat(100_000),
+        "sin(".repeat(100_000),
+    ] {
+        let said = refused("robot.par", &format!("{table}alpha = {{{deep}1}}\n"));
+        assert!(said.contains("is no expression"), "{}", &said[..200]);
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let bodies = |inside: &str| {
+        let (open, close) = ("<body>".repeat(390), "</body>".repeat(390));
+        format!("<mujoco><worldbody>{open}{inside}{close}</worldbody></mujoco>")
+    };
+    fs::write(folder.path().join("inner.xml"), bodies("")).expect("a file");
+    let file = folder.path().join("outer.xml");
+    fs::write(&file, bodies("<include file='inner.xml'/>")).expect("a file");
+    let errors = import(&file, &Options::default()).expect_err("too deep");
+    assert!(format!("{errors:?}").contains("more than 400 deep"));
+    let attributes: String = (0..10_000).map(|at| format!(" a{at}=''")).collect();
+    let said = refused("robot.urdf", &format!("<robot{attributes}/>"));
+    assert!(said.contains("more than 5000 attributes"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_included() {
+    for device in ["/dev/zero", "."] {
+        let said = refused(
+            "robot.xml",
+            &format!("<mujoco>\n<include file='{device}'/></mujoco>"),
+        );
+        assert!(
+            said.starts_with("2: ") && said.contains("no regular file"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn included_files_are_limited_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let blanks = " ".repeat(9 << 20);
+    fs::write(
+        folder.path().join("large.xml"),
+        format!("<mujoco>{blanks}</mujoco>"),
+    )
+    .expect("a file");
+    let file = folder.path().join("outer.xml");
+    fs::write(
+        &file,
+        format!(
+            "<mujoco>{}</mujoco>",
+            "<include file='large.xml'/>".repeat(3)
+        ),
+    )
+    .expect("a file");
+    let errors = import(&file, &Options::default()).expect_err("too large");
+    assert!(format!("{errors:?}").contains("may have 16777216 bytes together"));
+}
+
+#[test]
+fn a_second_frame_may_be_fixed_on_another_one() {
+    // A pendulum of two links whose tip is held by two links more; frame 6 is fixed on frame 5's body.
+    let table = |d: &str| {
+        format!(
+            "NL = 5\nNJ = 7\nNF = 9\nant = {{0,1,0,0,0,3,5,2,8}}\nsigma = {{0,0,0,0,0,0,0,2,2}}\nb = {{0,0,0,0,0,0,0,0,0}}\n\
+             d = {d}\nr = {{0,0,0,0,0,0,0,0,0}}\ngamma = {{0,0,0,0,0,0,0,0,0}}\nalpha = {{0,0,0,0,0,0,0,0,0}}\n\
+             mu = {{1,0,0,1,0,0,0,0,0}}\ntheta = {{t1,t2,t3,t4,t5,t6,t7,0,0}}\n"
+        )
+    };
+    let said = refused("robot.par", &table("{0,0.3,0.6,1.0,0.8,0.2,0.25,0.3,0.1}"));
+    assert!(said.starts_with("4: "), "{said}");
+}

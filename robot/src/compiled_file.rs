@@ -6,7 +6,11 @@ use overact_codegen::{
     Request, RobotModel, compile_with, description::Description, diagnostic::Source,
     mechanism::Mechanism,
 };
-use std::{fs, io, path::Path};
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
 
 /// A description with its model.
 #[derive(Debug)]
@@ -96,6 +100,20 @@ fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String
     ))
 }
 
+/// Bytes of a description or of a file of parameters, at most; a device may have no end.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// Reads a text of at most [`MOST_BYTES`].
+fn bounded(input: impl Read) -> io::Result<String> {
+    let mut text = String::new();
+    input.take(MOST_BYTES + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MOST_BYTES {
+        let message = format!("it has more than {} MB", MOST_BYTES >> 20);
+        return Err(io::Error::other(message));
+    }
+    Ok(text)
+}
+
 /// Reads a description's text.
 ///
 /// # Errors
@@ -114,8 +132,8 @@ pub(crate) fn read(path: &Path) -> Result<Source, Error> {
 pub(crate) fn read_or(path: &Path, origin: &str) -> Result<Source, Error> {
     let name = path.display().to_string();
     let text = match name.as_str() {
-        "-" => io::read_to_string(io::stdin()),
-        _ => fs::read_to_string(path),
+        "-" => bounded(io::stdin()),
+        _ => File::open(path).and_then(bounded),
     };
     match text {
         Ok(text) => Ok(Source::new(name, text)),

@@ -31,6 +31,7 @@
 //!   simulation; `runs`: logs and virtual runs;
 //! - [`inspection`]: what a model consists of and what it costs;
 //! - `check`: everything that is wrong with a description, found without its model;
+//! - `import`: descriptions of other programs' files, checked;
 //! - `excitation`: runs that determine the parameters best inside limits;
 //! - `gravity`: the direction of gravity from runs, and the robot in another one;
 //! - `variants`: the robot with other lengths, by which wrong ones are told;
@@ -60,6 +61,7 @@ mod fleet;
 mod functions_base;
 mod gravity;
 mod identifier;
+mod import;
 pub mod inspection;
 mod instruments;
 mod interpreted;
@@ -85,6 +87,7 @@ pub use excitation::{
 };
 pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
+pub use import::{errors_of_files, import};
 pub use inspection::Inspection;
 pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;

@@ -253,3 +253,36 @@ fn speeds_that_nothing_limits_are_told() {
     assert!(bare(""));
     assert!(!bare("velocity = \"9 rad/s\"\n"));
 }
+
+/// A slider on two cranks of a length, whose runs of the description it does not reach.
+fn yoke_with_cranks_of(length: &str) -> Robot {
+    let text = library("scotch_yoke").source().text.clone();
+    let start = text.find("crank = \"").expect("the length of the cranks");
+    let end = start + text[start..].find('\n').expect("a line");
+    let text = format!("{}crank = \"{length}\"{}", &text[..start], &text[end..]);
+    Robot::from_text("yoke.toml", &text).expect("a robot")
+}
+
+#[test]
+fn small_robots_are_excited_within_their_reach() {
+    let robot = yoke_with_cranks_of("1 mm");
+    let found = excited(&robot);
+    let limit = found
+        .limits
+        .iter()
+        .find(|own| own.kind == LimitKind::Position);
+    let reach = limit.expect("a limit of the position").values[0];
+    assert!((1e-4..1e-3).contains(&reach), "{reach}");
+    keeps_limits(&written(&robot, &found), &found);
+}
+
+#[test]
+fn robots_that_cannot_move_are_refused() {
+    let robot = yoke_with_cranks_of("1e-7 m");
+    let error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
+    let problems = error.problems();
+    assert!(
+        problems[0].message.contains("no motion about home"),
+        "{problems:?}"
+    );
+}

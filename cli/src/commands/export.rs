@@ -1,6 +1,6 @@
 //! `overact export`: identified parameters back into the robot's file that a description was made of.
 
-use super::import::{Choices, failure};
+use super::import::Choices;
 use crate::{
     failure::{Failure, Problem},
     note::is_quiet,
@@ -8,6 +8,7 @@ use crate::{
 };
 use overact_codegen::diagnostic::Code;
 use overact_interchange::{Exported, export};
+use overact_robot::errors_of_files;
 use std::{
     io::{self, Write},
     path::{Path, PathBuf},
@@ -52,7 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs: Vec<&Path> = output.into_iter().collect();
     check(&[file, &arguments.parameters], &outputs)?;
     let options = arguments.choices.options();
-    let exported = export(file, &arguments.parameters, &options).map_err(failure)?;
+    let exported = export(file, &arguments.parameters, &options).map_err(errors_of_files)?;
     let is_mjcf = exported.format == overact_interchange::Format::Mjcf;
     if is_mjcf != arguments.mjcf.is_some() {
         let (is, key) = if is_mjcf {

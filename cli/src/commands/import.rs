@@ -1,12 +1,11 @@
 //! `overact import`: a description from the robot's file in another format.
 
 use crate::{
-    failure::{Failure, Problem},
+    failure::Failure,
     output::{check, emit},
 };
-use overact_codegen::diagnostic::Code;
-use overact_interchange::{Options, import};
-use overact_robot::Error;
+use overact_interchange::Options;
+use overact_robot::import;
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -87,24 +86,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let output: Vec<&std::path::Path> = arguments.output.as_deref().into_iter().collect();
     check(&[&arguments.file], &output)?;
-    let imported = import(&arguments.file, &options).map_err(failure)?;
+    let imported = import(&arguments.file, &options)?;
     let inputs: Vec<&std::path::Path> = imported.inputs.iter().map(PathBuf::as_path).collect();
     check(&inputs, &output)?;
     emit(&imported.text, arguments.output.as_deref())
-}
-
-/// All errors of all files.
-pub(super) fn failure(errors: overact_interchange::Errors) -> Failure {
-    let described = errors
-        .0
-        .into_iter()
-        .map(|(source, diagnostics)| Error::Description {
-            source,
-            diagnostics,
-        });
-    let all: Vec<Error> = described.collect();
-    match all.is_empty() {
-        true => Problem::new(Code::FOREIGN, "the file can't be read").into(),
-        false => Failure::from(all),
-    }
 }

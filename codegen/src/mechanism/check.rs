@@ -19,8 +19,12 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut mechanism = plain(description);
     let mut errors = Diagnostics::new();
+    let is_too_large = check_sizes(description, &mut errors);
+    if is_too_large {
+        // Geometry of so many joints takes more time than anybody waits for.
+        return Err(errors);
+    }
     check_actuators(description, &mechanism, &mut errors);
-    check_sizes(description, &mut errors);
     let mut rough = rough_home(description);
     if !mechanism.is_parasitic() {
         check_structure(description, &mechanism, &rough, &mut errors);
@@ -224,10 +228,12 @@ const JOINTS: usize = 200;
 /// with the fourth power.
 const CHAIN: usize = 100;
 
-/// Legs without a joint, and robots with more than can be worked on.
-fn check_sizes(description: &Description, errors: &mut Diagnostics) {
+/// Reports legs without a joint, and robots with more joints than can be worked on; whether there are too many.
+fn check_sizes(description: &Description, errors: &mut Diagnostics) -> bool {
+    let mut is_too_large = false;
     let joints: usize = description.legs.iter().map(|leg| leg.joints.len()).sum();
     if joints > JOINTS {
+        is_too_large = true;
         let message = format!("the robot has {joints} joints, more than {JOINTS}");
         let help = "describe it in parts, each as a robot of its own";
         errors.push(
@@ -243,6 +249,7 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
         let own = leg.joints.iter().enumerate();
         let own = own.filter(|(at, joint)| joint.is_independent(*at)).count();
         if own > CHAIN {
+            is_too_large = true;
             let message = format!(
                 "leg `{}` has {own} independent joints, more than {CHAIN}: its identification model alone \
                  would take some {} operations",
@@ -263,6 +270,7 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
             ));
         }
     }
+    is_too_large
 }
 
 /// The joints of every leg must be determined by the motion of its end. Legs of one shape share their

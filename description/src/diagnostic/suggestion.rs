@@ -1,13 +1,23 @@
 //! The name that was probably meant.
 
+/// Candidates that are compared, at most: a damaged file may miss thousands of names among thousands.
+const MOST: usize = 500;
+/// Bytes of a name that is compared, at most.
+const LONGEST: usize = 100;
+
 /// The candidate nearest to `name` by edit distance, if one is near enough to be meant.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A single letter is near to every other one, which means nothing.
     let length = name.chars().count();
     let limit = (length / 3).max(1).min(length.saturating_sub(1));
+    if name.len() > LONGEST {
+        return None;
+    }
     let near = candidates
         .into_iter()
+        .take(MOST)
+        .filter(|c| c.len() <= LONGEST)
         .map(|c| (distance(name, c), c))
         .filter(|(d, _)| *d <= limit);
     // `min_by_key` keeps the first of equals, so the answer does not depend on chance.

@@ -24,6 +24,9 @@ use std::marker::PhantomData;
 /// How deep parentheses and signs may nest.
 const DEPTH: usize = 64;
 
+/// Names that are listed where an unknown one stands, at most.
+const KNOWN: usize = 50;
+
 /// What a name stands for.
 pub(crate) enum Meaning {
     /// A value.
@@ -364,8 +367,8 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         }
         let all = self.names.all();
         let help = did_you_mean(token.text, all.iter().map(String::as_str));
-        let help =
-            help.or_else(|| (!all.is_empty()).then(|| format!("known here: {}", all.join(", "))));
+        let is_short = (1..=KNOWN).contains(&all.len());
+        let help = help.or_else(|| is_short.then(|| format!("known here: {}", all.join(", "))));
         let fault = Fault::new(format!("unknown name `{}`", token.text)).maybe_help(help);
         Err(Failure::Fault(fault, token.span.clone()))
     }

@@ -4,6 +4,8 @@ use std::io::Read;
 
 use libflate::deflate::Decoder;
 
+use super::budget::Budget;
+
 /// Records of an archive start with these bytes.
 const END: &[u8] = b"PK\x05\x06";
 const LISTED: &[u8] = b"PK\x01\x02";
@@ -77,8 +79,9 @@ impl Member {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(super) fn content(&self, archive: &[u8]) -> Result<Vec<u8>, String> {
+    pub(super) fn content(&self, archive: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
         let broken = |what: &str| format!("`{}` {what}", super::problems::shown(&self.name));
+        let named = |why: &str| format!("`{}`: {why}", super::problems::shown(&self.name));
         if self.size == ELSEWHERE || self.packed == ELSEWHERE {
             return Err(broken("has more than 4 GB"));
         }
@@ -91,14 +94,15 @@ impl Member {
         });
         let data = data.ok_or_else(|| broken("is cut off"))?;
         let content = match self.method {
-            0 => data.to_vec(),
+            0 => {
+                // The same bytes may be those of many members.
+                budget.take(data.len() as u64).map_err(|why| named(&why))?;
+                data.to_vec()
+            }
             8 => {
-                let mut content = Vec::new();
-                // One byte more tells that the member is larger than it says.
-                let mut unpacked = Decoder::new(data).take(self.size as u64 + 1);
-                let read = unpacked.read_to_end(&mut content);
-                read.map_err(|_| broken("is broken"))?;
-                content
+                // One byte more shows that the member is larger than it says.
+                let unpacked = Decoder::new(data).take(self.size as u64 + 1);
+                budget.unpack(unpacked).map_err(|why| named(&why))?
             }
             _ => return Err(broken("is packed in a way that is not read")),
         };

@@ -104,6 +104,14 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
 /// # Errors
 /// A file that can't be read, or one that is named and not read.
 pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
+    if let Some(path) = medium.path()
+        && path.metadata().is_ok_and(|found| !found.is_file())
+    {
+        // A log is read several times; a pipe can't be, and a device may have no end.
+        let message = "the log is no regular file";
+        let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
+        return Err(problem.help("write it to a file first").into());
+    }
     let mut beginning = Vec::new();
     medium
         .open()

@@ -4,7 +4,7 @@ use overact::Code;
 
 use matfile::{Array, MatFile, NumericData};
 
-use super::{arrays::Arrays, medium::Medium, problems::unreadable, structures};
+use super::{arrays::Arrays, budget::Budget, medium::Medium, problems::unreadable, structures};
 use crate::error::{Error, Problem};
 
 /// Reads all arrays of a file.
@@ -13,25 +13,33 @@ use crate::error::{Error, Problem};
 /// A file that can't be read.
 pub(super) fn open(file: String, medium: &Medium) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
-    let mat = MatFile::parse(bytes.as_slice()).map_err(|error| {
-        Problem::new(
-            Code::LOG_FORMAT,
-            format!("the file is not a MATLAB v5 file: {error}"),
-        )
-        .file(file.as_str())
-        .help("save it in MATLAB with `save(..., '-v7')`, or export CSV")
-    })?;
-    let mut arrays = Arrays::new(file);
-    for array in mat.arrays() {
-        push(&mut arrays, array.name(), array);
-    }
-    for (name, field) in structures::fields(&bytes) {
-        // Fields that are no numbers are left out, as other variables that are none.
-        let field = MatFile::parse(field.as_slice());
-        if let Some(array) = field.iter().flat_map(MatFile::arrays).next() {
-            push(&mut arrays, &name, array);
+    let broken = |why: String| -> Error {
+        let message = format!("the file is not a MATLAB v5 file: {why}");
+        let problem = Problem::new(Code::LOG_FORMAT, message).file(file.as_str());
+        let help = "save it in MATLAB with `save(..., '-v7')`, or export CSV";
+        problem.help(help).into()
+    };
+    let header = &bytes[..bytes.len().min(structures::HEADER)];
+    MatFile::parse(header).map_err(|error| broken(error.to_string()))?;
+    let mut arrays = Arrays::new(file.clone());
+    let mut budget = Budget::of_file(&bytes);
+    // Small integers take more memory as numbers than they do unpacked.
+    let mut of_numbers = Budget::of_file(&bytes);
+    let read = structures::arrays(&bytes, &mut budget, &mut |one| {
+        let mat = match MatFile::parse(one.file) {
+            Ok(mat) => mat,
+            Err(_) if one.name.is_some() => return Ok(()),
+            Err(error) => return Err(error.to_string()),
+        };
+        if let Some(array) = mat.arrays().first() {
+            if one.is_packed {
+                of_numbers.take(array.size().iter().product::<usize>() as u64 * 8)?;
+            }
+            push(&mut arrays, one.name.unwrap_or(array.name()), array);
         }
-    }
+        Ok(())
+    });
+    read.map_err(broken)?;
     Ok(arrays)
 }
 

@@ -11,6 +11,7 @@
 
 mod archive;
 mod arrays;
+mod budget;
 mod clock;
 mod columns;
 mod dataset;

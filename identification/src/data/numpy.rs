@@ -7,6 +7,7 @@
 use super::{
     archive,
     arrays::Arrays,
+    budget::Budget,
     medium::Medium,
     problems::{shown, unreadable},
 };
@@ -57,11 +58,12 @@ pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Erro
     }
     let mut arrays = Arrays::new(file.clone());
     let mut left_out = Vec::new();
+    let mut budget = Budget::of_file(&bytes);
     for member in &members {
         let Some(name) = member.name.strip_suffix(".npy") else {
             continue;
         };
-        let content = member.content(&bytes).map_err(broken)?;
+        let content = member.content(&bytes, &mut budget).map_err(broken)?;
         if let Err(why) = push(&mut arrays, name, &content) {
             left_out.push(format!("`{}`: {why}", shown(name)));
         }
@@ -117,7 +119,10 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
         [rows, columns] => (rows, columns),
         _ => return Err(format!("the array has {} dimensions", header.shape.len())),
     };
-    if header.is_by_columns || shape.1 <= 1 {
+    if values.is_empty() {
+        // One of the sizes is zero, and the other may be any.
+        arrays.push(name, (0, 0), &values);
+    } else if header.is_by_columns || shape.1 <= 1 {
         arrays.push(name, shape, &values);
     } else {
         let (rows, columns) = shape;

@@ -7,8 +7,10 @@ use std::io::Read;
 
 use libflate::zlib::Decoder;
 
+use super::budget::Budget;
+
 /// Bytes of a file before its first element.
-const HEADER: usize = 128;
+pub(super) const HEADER: usize = 128;
 
 /// Structures inside of structures, at most.
 const LARGEST_DEPTH: usize = 8;
@@ -20,54 +22,116 @@ const COMPRESSED: u32 = 15;
 /// Class of an array that is a structure.
 const STRUCTURE: u8 = 2;
 
-/// Bytes of an array from which its class is told.
-const BEGINNING: u64 = 64;
+/// Classes of arrays of numbers.
+const NUMBERS: std::ops::RangeInclusive<u8> = 6..=15;
 
-/// All fields of the structures of a file that are no structures themselves, each with its name and as a file
-/// of one array. What is broken is left out: it is missing then.
-pub(super) fn fields(file: &[u8]) -> Vec<(String, Vec<u8>)> {
-    let Some((header, content)) = file.split_at_checked(HEADER) else {
-        return Vec::new();
-    };
+/// Bytes of an array from which its class and size are read.
+const BEGINNING: usize = 72;
+
+/// An array of a file, as a file of that array alone.
+pub(super) struct OneArray<'a> {
+    /// The name of a field, `STRUCTURE.FIELD`; none of arrays that have their own.
+    pub(super) name: Option<&'a str>,
+    /// Whether it is packed in the file that it is from.
+    pub(super) is_packed: bool,
+    /// The file.
+    pub(super) file: &'a mut dyn Read,
+}
+
+/// Gives all arrays of numbers in a file to `take`: those of its own, and the fields of its structures. Other arrays
+/// are left out, packed ones without unpacking them.
+///
+/// # Errors
+/// A sentence about what is broken, what unpacks to more than the budget, or what `take` says.
+pub(super) fn arrays(
+    file: &[u8],
+    budget: &mut Budget,
+    take: &mut dyn FnMut(OneArray<'_>) -> Result<(), String>,
+) -> Result<(), String> {
+    let cut_off = || String::from("it is cut off");
+    let (header, content) = file.split_at_checked(HEADER).ok_or_else(cut_off)?;
     let order = Order {
         is_little: header.ends_with(b"IM"),
     };
-    let mut fields = Vec::new();
+    let mut read = 0;
     for element in order.elements(content) {
-        let unpacked;
-        let element = match element.kind {
-            COMPRESSED => match structure(element.data, order) {
-                Some(bytes) => {
-                    unpacked = bytes;
-                    order.elements(&unpacked).next()
-                }
-                None => None,
-            },
-            _ => Some(element),
+        read += element.whole.len();
+        let beginning = match element.kind {
+            COMPRESSED => beginning(element.data)?,
+            _ => element.whole[..element.whole.len().min(BEGINNING)].to_vec(),
         };
-        if let Some(element) = element.filter(|element| element.kind == MATRIX) {
-            order.collect((header, ""), element.data, 0, &mut fields);
+        let is_packed = element.kind == COMPRESSED;
+        let mut fields = Vec::new();
+        match (order.kind(&beginning)?, is_packed) {
+            (ArrayKind::Numbers, true) => {
+                let packed = Decoder::new(element.data).map_err(|_| String::from(BROKEN))?;
+                let mut unpacked = budget.limited(packed);
+                let mut file = header.chain(&mut unpacked);
+                let taken = take(OneArray {
+                    name: None,
+                    is_packed,
+                    file: &mut file,
+                });
+                budget.settle(&unpacked)?;
+                taken?;
+            }
+            (ArrayKind::Numbers, _) => {
+                let mut file = header.chain(element.whole);
+                take(OneArray {
+                    name: None,
+                    is_packed,
+                    file: &mut file,
+                })?;
+            }
+            (ArrayKind::Structure, true) => {
+                let packed = Decoder::new(element.data).map_err(|_| String::from(BROKEN))?;
+                let unpacked = budget.unpack(packed)?;
+                if let Some(element) = order.elements(&unpacked).next() {
+                    order.collect((header, ""), element.data, 0, &mut fields);
+                }
+            }
+            (ArrayKind::Structure, _) => {
+                order.collect((header, ""), element.data, 0, &mut fields);
+            }
+            (ArrayKind::Other, _) => {}
+        }
+        for (name, field) in &fields {
+            // Fields that are no numbers are left out, as other variables that are none.
+            let beginning = &field[HEADER..field.len().min(HEADER + BEGINNING)];
+            if matches!(order.kind(beginning), Ok(ArrayKind::Numbers)) {
+                let (name, file) = (Some(name.as_str()), &mut field.as_slice());
+                take(OneArray {
+                    name,
+                    is_packed,
+                    file,
+                })?;
+            }
         }
     }
-    fields
+    // What follows the last element may fill the file up.
+    if content[read..].iter().any(|byte| *byte != 0) {
+        return Err(cut_off());
+    }
+    Ok(())
 }
 
-/// A packed array, unpacked if it is a structure.
-fn structure(packed: &[u8], order: Order) -> Option<Vec<u8>> {
-    let unpack = |most: u64| -> Option<Vec<u8>> {
-        let mut bytes = Vec::new();
-        Decoder::new(packed)
-            .ok()?
-            .take(most)
-            .read_to_end(&mut bytes)
-            .ok()?;
-        Some(bytes)
-    };
-    let beginning = unpack(BEGINNING)?;
-    let flags = order.elements(beginning.get(8..)?).next()?;
-    (order.class(flags.data) == Some(STRUCTURE))
-        .then(|| unpack(u64::MAX))
-        .flatten()
+/// What is wrong with packed bytes.
+const BROKEN: &str = "it is broken";
+
+/// What an array holds.
+enum ArrayKind {
+    Numbers,
+    Structure,
+    Other,
+}
+
+/// The first bytes of a packed array.
+fn beginning(packed: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let unpacked = Decoder::new(packed).map_err(|_| String::from(BROKEN))?;
+    let read = unpacked.take(BEGINNING as u64).read_to_end(&mut bytes);
+    read.map_err(|_| String::from(BROKEN))?;
+    Ok(bytes)
 }
 
 /// An element of a file or of an array.
@@ -97,6 +161,33 @@ impl Order {
     /// The class of an array, of the data of its flags.
     fn class(self, flags: &[u8]) -> Option<u8> {
         self.number(flags).map(|flags| flags.to_le_bytes()[0])
+    }
+
+    /// What an array holds, from its first bytes.
+    ///
+    /// # Errors
+    /// A sentence about an array of numbers whose size is none.
+    fn kind(self, beginning: &[u8]) -> Result<ArrayKind, String> {
+        if self.number(beginning) != Some(MATRIX) {
+            return Ok(ArrayKind::Other);
+        }
+        let mut elements = self.elements(beginning.get(8..).unwrap_or_default());
+        let class = elements.next().and_then(|flags| self.class(flags.data));
+        match class {
+            Some(STRUCTURE) => return Ok(ArrayKind::Structure),
+            Some(class) if NUMBERS.contains(&class) => {}
+            _ => return Ok(ArrayKind::Other),
+        }
+        let sizes = elements.next().map_or(&[][..], |sizes| sizes.data);
+        let sizes = sizes.chunks_exact(4).map(|size| self.number(size));
+        let count = sizes
+            .into_iter()
+            .try_fold(1_u32, |count, size| count.checked_mul(size?));
+        if count.is_some_and(|count| i32::try_from(count).is_ok()) {
+            Ok(ArrayKind::Numbers)
+        } else {
+            Err(String::from("the size of an array is none"))
+        }
     }
 
     /// The elements that follow one another.
@@ -172,5 +263,66 @@ impl Order {
         let array = [flags, size, &name, array.get(nameless..)?].concat();
         let tag = [bytes(MATRIX), bytes(u32::try_from(array.len()).ok()?)].concat();
         Some([tag, array].concat())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COMPRESSED, HEADER, MATRIX, arrays};
+    use crate::data::budget::Budget;
+    use libflate::zlib::Encoder;
+    use std::io::Write;
+
+    fn element(kind: u32, data: &[u8]) -> Vec<u8> {
+        let size = u32::try_from(data.len()).expect("a size");
+        [&kind.to_le_bytes()[..], &size.to_le_bytes(), data].concat()
+    }
+
+    /// A file of one packed array of this class and this many bytes of zeros.
+    fn packed(class: u8, bytes: usize) -> Vec<u8> {
+        let flags = element(6, &[class, 0, 0, 0, 0, 0, 0, 0]);
+        let rows = i32::try_from(bytes / 8).expect("a size").to_le_bytes();
+        let size = element(5, &[rows, 1_i32.to_le_bytes()].concat());
+        let name = element(1, b"q1234567");
+        let array = element(
+            MATRIX,
+            &[flags, size, name, element(9, &vec![0; bytes])].concat(),
+        );
+        let mut packing = Encoder::new(Vec::new()).expect("an encoder");
+        packing.write_all(&array).expect("packed");
+        let packed = packing.finish().into_result().expect("packed");
+        let mut file = b"MATLAB 5.0 MAT-file".to_vec();
+        file.resize(HEADER - 4, b' ');
+        file.extend(b"\x00\x01IM");
+        file.extend(element(COMPRESSED, &packed));
+        file
+    }
+
+    /// How many bytes are unpacked of the array of a file.
+    fn unpacked(file: &[u8], budget: &mut Budget) -> Result<usize, String> {
+        let mut bytes = Vec::new();
+        arrays(file, budget, &mut |one| {
+            one.file
+                .read_to_end(&mut bytes)
+                .map_err(|error| error.to_string())?;
+            Ok(())
+        })?;
+        Ok(bytes.len())
+    }
+
+    #[test]
+    fn packed_arrays_are_unpacked_within_the_budget() {
+        const NUMBERS: u8 = 6;
+        const TEXT: u8 = 4;
+        let file = packed(NUMBERS, 80_000);
+        assert!(file.len() < 2000);
+        let mut budget = Budget::of_file(&file);
+        assert!(unpacked(&file, &mut budget).is_ok_and(|bytes| bytes > 80_000));
+        let mut budget = Budget::with(40_000);
+        let refused = unpacked(&file, &mut budget).expect_err("too large");
+        assert!(refused.contains("unpacked it has more than"), "{refused}");
+        // Texts are not unpacked at all.
+        let mut budget = Budget::with(0);
+        assert_eq!(unpacked(&packed(TEXT, 80_000), &mut budget), Ok(0));
     }
 }

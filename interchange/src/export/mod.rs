@@ -68,7 +68,9 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
     }
     let robot = Robot::new(files, &model, options)?;
     // Names of parameters do not depend on a virtual experiment.
-    let text = robot.toml(&Err("none is needed".to_owned()), path, options);
+    let text = robot
+        .toml(&Err("none is needed".to_owned()), path, options)
+        .text;
     let values = values(files, parameters, &text)?;
     let mut own = Export {
         files,

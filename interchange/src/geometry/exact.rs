@@ -70,9 +70,28 @@ pub(crate) fn direction(xyz: [f64; 3]) -> Option<Vector3<f64>> {
             v
         }
     };
-    let found = Vector3::from(xyz).try_normalize(1e-9)?;
+    let found = unit(&Vector3::from(xyz), SHORTEST)?;
     Some(found.map(clean).normalize())
 }
+
+/// Axes that are shorter have no direction.
+pub(crate) const SHORTEST: f64 = 1e-9;
+
+/// A vector of length 1 in the direction of another, whatever its size; `None` if that is not longer than `shortest`.
+///
+/// The squares of components beyond 1e154 are infinite; such vectors are divided by their largest component first.
+#[must_use]
+pub(crate) fn unit(vector: &Vector3<f64>, shortest: f64) -> Option<Vector3<f64>> {
+    let largest = vector.amax();
+    if largest > LARGE {
+        (vector / largest).try_normalize(shortest)
+    } else {
+        vector.try_normalize(shortest)
+    }
+}
+
+/// Components whose squares are far from the largest number.
+const LARGE: f64 = 1e100;
 
 /// The rotation of URDF's roll, pitch and yaw.
 #[must_use]
@@ -84,6 +103,8 @@ pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Rotation3<f64> {
 #[must_use]
 pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Option<Rotation3<f64>> {
     let raw = nalgebra::Quaternion::new(w, x, y, z);
+    let largest = raw.coords.amax();
+    let raw = if largest > LARGE { raw / largest } else { raw };
     (raw.norm() > 1e-12).then(|| {
         let unit = UnitQuaternion::from_quaternion(raw);
         cleaned(&unit.to_rotation_matrix())
@@ -106,7 +127,7 @@ pub(crate) fn cleaned(rotation: &Rotation3<f64>) -> Rotation3<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{angle, quaternion, roll_pitch_yaw};
+    use super::{angle, direction, quaternion, roll_pitch_yaw};
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
     /// The number that a file writes with so many digits.
@@ -121,6 +142,22 @@ mod tests {
         let coarse = written(FRAC_PI_2, 4);
         assert_eq!(angle(coarse), coarse);
         assert_eq!(angle(0.3), 0.3);
+    }
+
+    #[test]
+    fn directions_of_huge_vectors_are_those_of_small_ones() {
+        for size in [1.0, 1e100, 1e155, 1e160, 1e308] {
+            let up = direction([0.0, size, 0.0]).expect("a direction");
+            assert_eq!([up.x, up.y, up.z], [0.0, 1.0, 0.0], "{size:e}");
+            let across = direction([size, 0.0, size]).expect("a direction");
+            assert!(
+                (across.x - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-15,
+                "{size:e}"
+            );
+            let turned = quaternion([size, 0.0, 0.0, size]).expect("a quaternion");
+            assert!(turned.matrix().iter().all(|v| v.fract() == 0.0), "{turned}");
+        }
+        assert!(direction([0.0, 1e-10, 0.0]).is_none());
     }
 
     #[test]

@@ -154,7 +154,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     joint.at = Point3::from(element.numbers(files, "pos").unwrap_or_default());
     if kind != Kind::Ball {
         let [x, y, z] = element.numbers(files, "axis").unwrap_or([0.0, 0.0, 1.0]);
-        let Some(axis) = Vector3::new(x, y, z).try_normalize(1e-9) else {
+        let Some(axis) = exact::unit(&Vector3::new(x, y, z), exact::SHORTEST) else {
             files.report(
                 &element.place,
                 "the axis has no direction",

@@ -15,6 +15,11 @@ pub(super) struct Defaults {
     classes: BTreeMap<String, Class>,
 }
 
+/// Classes, at most.
+const MOST_CLASSES: usize = 1_000;
+/// Attributes of a class, at most: more than MJCF has.
+const MOST_ATTRIBUTES: usize = 1_000;
+
 /// The class of everything that names none.
 pub(super) const MAIN: &str = "main";
 
@@ -35,6 +40,14 @@ impl Defaults {
     }
 
     fn add(&mut self, files: &Files, element: &Element, name: &str, mut class: Class) {
+        if self.classes.len() > MOST_CLASSES || class.len() > MOST_ATTRIBUTES {
+            let message = format!(
+                "more than {MOST_CLASSES} default classes, or {MOST_ATTRIBUTES} attributes in one"
+            );
+            let help = "no model has so many: take some out";
+            files.report(&element.place, message, help);
+            return;
+        }
         for child in element
             .children
             .iter()

@@ -3,10 +3,11 @@
 use super::{Reader, Sites, defaults::MAIN};
 use crate::{
     assembly::motion::Motion,
+    geometry::exact,
     model::{Closure, ClosureKind, Follow, Model, Pose},
     xml::Element,
 };
-use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Vector3};
 
 pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
     // Where one frame is given, the other is where it is in the file's own configuration.
@@ -122,8 +123,8 @@ fn frames(
         .filter(|pose| pose[3..].iter().any(|v| *v != 0.0));
     let second_in_first = match given {
         Some([x, y, z, w, i, j, k]) => {
-            let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
-            Pose::from_parts(Vector3::new(x, y, z).into(), turn.to_rotation_matrix())
+            let turn = exact::quaternion([w, i, j, k]).unwrap_or_default();
+            Pose::from_parts(Vector3::new(x, y, z).into(), turn)
         }
         None => relative.inverse(),
     };

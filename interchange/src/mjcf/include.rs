@@ -34,21 +34,26 @@ pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
     let mut root = xml::parse(files, file, &SKIPPED)?;
     let folder = files.folder(file);
     let mut open = vec![files.path(file)];
-    expand(files, &mut root, &folder, &mut open)?;
+    expand(files, &mut root, &folder, &mut open, 0)?;
     files.is_clean().then_some(root)
 }
 
-/// Puts the elements of included files in the places of the includes.
+/// Puts the elements of included files in the places of the includes; `depth` is that of the element.
 fn expand(
     files: &Files,
     of: &mut Element,
     folder: &PathBuf,
     open: &mut Vec<PathBuf>,
+    depth: usize,
 ) -> Option<()> {
+    if depth > xml::DEPTH {
+        xml::too_deep(files, &of.place);
+        return None;
+    }
     let mut children = Vec::with_capacity(of.children.len());
     for mut child in std::mem::take(&mut of.children) {
         if child.name != "include" {
-            expand(files, &mut child, folder, open)?;
+            expand(files, &mut child, folder, open, depth + 1)?;
             children.push(child);
             continue;
         }
@@ -73,7 +78,7 @@ fn expand(
             continue;
         };
         open.push(path);
-        expand(files, &mut included, folder, open)?;
+        expand(files, &mut included, folder, open, depth)?;
         open.pop();
         children.append(&mut included.children);
     }

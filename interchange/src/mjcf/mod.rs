@@ -7,6 +7,7 @@ mod equality;
 mod include;
 
 use crate::{
+    bounds,
     files::Files,
     geometry::exact,
     model::{Model, Pose},
@@ -20,6 +21,7 @@ use std::collections::BTreeMap;
 /// Reads a robot; what is wrong is noted in the files.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let root = include::whole(files, file)?;
+    bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("model").unwrap_or("robot"));
     let reader = Reader {
         files,
@@ -138,23 +140,19 @@ impl Compiler {
             });
         }
         if let Some([x, y, z, angle]) = of.numbers(files, "axisangle") {
-            let axis = Vector3::new(x, y, z).try_normalize(1e-12);
+            let axis = exact::unit(&Vector3::new(x, y, z), 1e-12);
             return axis.map_or_else(Rotation3::identity, |axis| {
                 exact::turn(&axis, self.angle(angle))
             });
         }
         if let Some([a, b, c, d, e, f]) = of.numbers(files, "xyaxes") {
-            let x = Vector3::new(a, b, c).normalize();
-            let y = Vector3::new(d, e, f);
-            let y = (y - x * x.dot(&y)).normalize();
-            let columns = [x, y, x.cross(&y)];
-            if columns.iter().all(|c| c.iter().all(|v| v.is_finite())) {
-                let matrix = nalgebra::Matrix3::from_columns(&columns);
-                return exact::cleaned(&Rotation3::from_matrix_unchecked(matrix));
+            if let Some(rotation) = of_axes(&Vector3::new(a, b, c), &Vector3::new(d, e, f)) {
+                return rotation;
             }
         }
         if let Some([x, y, z]) = of.numbers(files, "zaxis") {
-            let to = Rotation3::rotation_between(&Vector3::z(), &Vector3::new(x, y, z));
+            let axis = exact::unit(&Vector3::new(x, y, z), 0.0).unwrap_or_else(Vector3::z);
+            let to = Rotation3::rotation_between(&Vector3::z(), &axis);
             let turned = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
             return exact::cleaned(&to.unwrap_or_else(turned));
         }
@@ -178,6 +176,15 @@ impl Compiler {
         let [x, y, z] = of.numbers(files, "pos").unwrap_or_default();
         Pose::from_parts(Vector3::new(x, y, z).into(), self.rotation(files, of))
     }
+}
+
+/// The rotation whose first axis is `x`, and whose second lies in the plane of both; `None` if they are parallel.
+fn of_axes(x: &Vector3<f64>, y: &Vector3<f64>) -> Option<Rotation3<f64>> {
+    let x = exact::unit(x, 0.0)?;
+    let y = if y.amax() > 1e100 { y / y.amax() } else { *y };
+    let y = exact::unit(&(y - x * x.dot(&y)), 0.0)?;
+    let matrix = nalgebra::Matrix3::from_columns(&[x, y, x.cross(&y)]);
+    Some(exact::cleaned(&Rotation3::from_matrix_unchecked(matrix)))
 }
 
 fn sequence(text: &str) -> Option<[(usize, bool); 3]> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Expressions within each other.
+/// Parentheses, functions and powers within each other, at most.
 const DEPTH: usize = 50;
 
 /// Why an expression has no value.
@@ -60,11 +60,18 @@ impl Reader<'_> {
         }
     }
 
-    fn sum(&mut self) -> Result<f64, Fault> {
-        self.depth += 1;
-        if self.depth > DEPTH {
+    /// Reads one level deeper, unless that is too deep.
+    fn nested(&mut self, read: fn(&mut Self) -> Result<f64, Fault>) -> Result<f64, Fault> {
+        if self.depth >= DEPTH {
             return Err(Fault::Unreadable);
         }
+        self.depth += 1;
+        let value = read(self)?;
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn sum(&mut self) -> Result<f64, Fault> {
         let mut sum = self.product()?;
         loop {
             if self.next_is("+") {
@@ -72,7 +79,6 @@ impl Reader<'_> {
             } else if self.next_is("-") {
                 sum -= self.product()?;
             } else {
-                self.depth -= 1;
                 return Ok(sum);
             }
         }
@@ -103,14 +109,14 @@ impl Reader<'_> {
         }
         let base = self.atom()?;
         if self.next_is("**") || self.next_is("^") {
-            return Ok(sign * base.powf(self.signed()?));
+            return Ok(sign * base.powf(self.nested(Self::signed)?));
         }
         Ok(sign * base)
     }
 
     fn atom(&mut self) -> Result<f64, Fault> {
         if self.next_is("(") {
-            let value = self.sum()?;
+            let value = self.nested(Self::sum)?;
             return self.next_is(")").then_some(value).ok_or(Fault::Unreadable);
         }
         let rest = self.rest.trim_start();
@@ -144,9 +150,9 @@ impl Reader<'_> {
             return Ok(std::f64::consts::PI);
         }
         if function(name, &[1.0, 1.0]).is_some() && self.next_is("(") {
-            let mut arguments = vec![self.sum()?];
+            let mut arguments = vec![self.nested(Self::sum)?];
             while self.next_is(",") {
-                arguments.push(self.sum()?);
+                arguments.push(self.nested(Self::sum)?);
             }
             let value = function(name, &arguments);
             return value.filter(|_| self.next_is(")")).ok_or(Fault::Unreadable);
@@ -187,7 +193,17 @@ mod tests {
         assert_eq!(of("D3**2 + 3*(RL4 - 1) - 1e-1"), Ok(0.25 + 3.0 - 0.1));
         assert_eq!(of("2^-1*atan2(0, -1)"), Ok(std::f64::consts::FRAC_PI_2));
         assert_eq!(of("D4"), Err(Fault::Unknown("D4".to_owned())));
-        for wrong in ["", "(1", "1 2", "1/0", "sin()", "{1}", &"(".repeat(1000)] {
+        for wrong in [
+            "",
+            "(1",
+            "1 2",
+            "1/0",
+            "sin()",
+            "{1}",
+            &"(".repeat(1000),
+            &"1^".repeat(50_000),
+            &"-(".repeat(50_000),
+        ] {
             assert_eq!(of(wrong), Err(Fault::Unreadable), "{wrong}");
         }
         assert_eq!(symbols("th1 + pi/2 - sin(D3)*th1"), ["D3", "th1"]);

@@ -139,18 +139,30 @@ impl Reader<'_> {
 
     /// A closure between the body that a cut joint carries and the one on which its second frame is fixed.
     fn close(&self, at: usize, cut: usize, table: &[Frame], model: &mut Model) {
-        let frame = &table[at];
-        let Some(step) = self.step(at, &BTreeMap::new()) else {
+        let Some((body, placement)) = self.on_body(at, table, model.bodies.len()) else {
             return;
         };
         model.closures.push(Closure {
             name: format!("j{}", cut + 1),
             kind: ClosureKind::Weld {
-                bodies: [frame.antecedent, cut + 1],
-                at: [step.frame(), Pose::identity()],
+                bodies: [body, cut + 1],
+                at: [placement, Pose::identity()],
             },
-            place: frame.place.clone(),
+            place: table[at].place.clone(),
         });
+    }
+
+    /// The body that a second frame is fixed on, the last of `bodies` at most, and the frame in that body's; frames
+    /// between the two are fixed as well. `None` after an error.
+    fn on_body(&self, at: usize, table: &[Frame], bodies: usize) -> Option<(usize, Pose)> {
+        let mut placement = self.step(at, &BTreeMap::new())?.frame();
+        let mut antecedent = table[at].antecedent;
+        while antecedent >= bodies {
+            let before = antecedent - 1;
+            placement = self.step(before, &BTreeMap::new())?.frame() * placement;
+            antecedent = table[before].antecedent;
+        }
+        Some((antecedent, placement))
     }
 
     /// The frame where its joint stands at zero, and the joint; `None` after an error.

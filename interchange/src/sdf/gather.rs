@@ -11,7 +11,7 @@ use crate::{
 };
 use std::{collections::BTreeSet, path::PathBuf};
 
-/// Models within each other.
+/// Models within each other, also those of included files.
 const DEPTH: usize = 60;
 /// Models altogether.
 const MODELS: usize = 20_000;
@@ -57,6 +57,8 @@ pub(super) struct Gathered<'f> {
     pub(super) joints: Vec<JointItem>,
     pub(super) plugins: Vec<String>,
     models: usize,
+    /// Models that are open.
+    depth: usize,
     /// Names of links and joints that are taken.
     taken: BTreeSet<(&'static str, String)>,
     /// Files within each other that are open.
@@ -80,6 +82,7 @@ impl<'f> Gathered<'f> {
             joints: Vec::new(),
             plugins: Vec::new(),
             models: 0,
+            depth: 0,
             taken: BTreeSet::new(),
             open: vec![open],
             shown_without,
@@ -101,8 +104,8 @@ impl<'f> Gathered<'f> {
         owner: Owner,
     ) -> Option<()> {
         self.models += 1;
-        if self.frames.scopes.len() > MODELS || self.models > MODELS || self.open.len() > DEPTH {
-            let message = format!("more than {MODELS} models, or {DEPTH} files within each other");
+        if self.frames.scopes.len() > MODELS || self.models > MODELS || self.depth > DEPTH {
+            let message = format!("more than {MODELS} models, or {DEPTH} within each other");
             let help = "describe the robot in fewer parts";
             self.files.report(&element.place, message, help);
             return None;
@@ -142,7 +145,9 @@ impl<'f> Gathered<'f> {
                 });
         let is_from_file = source.from.is_some();
         self.open.extend(source.from);
+        self.depth += 1;
         let gathered = self.inside(element, own, frame, owner);
+        self.depth -= 1;
         if is_from_file {
             self.open.pop();
         }

@@ -2,6 +2,7 @@
 
 use super::{SKIPPED, value::text, version};
 use crate::{
+    bounds,
     files::{Files, Place},
     xml::{self, Element},
 };
@@ -104,6 +105,7 @@ fn included(
     }
     let file = files.read(path, Some(place))?;
     let root = xml::parse(files, file, &SKIPPED)?;
+    bounds::check_elements(files, &root)?;
     let version = version(files, &root)?;
     let mut models = root.all("model");
     let (Some(model), None) = (models.next(), models.next()) else {

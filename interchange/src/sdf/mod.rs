@@ -16,6 +16,7 @@ mod tree;
 mod value;
 
 use crate::{
+    bounds,
     files::Files,
     model::Model,
     options::Options,
@@ -48,6 +49,7 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 /// Reads a robot; what is wrong is noted in the files.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let root = xml::parse(files, file, &SKIPPED)?;
+    bounds::check_elements(files, &root)?;
     let version = version(files, &root)?;
     let mut worlds = root.all("world");
     let world = worlds.next();

@@ -66,7 +66,7 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
         let Some((key, place, text)) = open.take() else {
             return;
         };
-        match value(&text) {
+        match value(&text, 0) {
             Some(value) => drop(entries.insert(key, (place, value))),
             None => files.report(
                 &place,
@@ -102,24 +102,30 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
     files.is_clean().then_some(entries)
 }
 
-/// The value of a text: a list in brackets, items behind hyphens, or a word.
-fn value(text: &str) -> Option<Value> {
+/// Lists within each other, at most.
+const DEPTH: usize = 8;
+
+/// The value of a text: a list in brackets, items behind hyphens, or a word; `depth` lists are around it.
+fn value(text: &str, depth: usize) -> Option<Value> {
     let text = text.trim();
     if text.starts_with('-') {
+        if depth > DEPTH {
+            return None;
+        }
         let items = text
             .lines()
             .map(|line| line.trim().strip_prefix('-').map(str::trim));
-        let items = items.map(|item| value(item?));
+        let items = items.map(|item| value(item?, depth + 1));
         return items.collect::<Option<Vec<_>>>().map(Value::List);
     }
     let mut rest = text;
-    let found = bracketed(&mut rest, 0)?;
+    let found = bracketed(&mut rest, depth)?;
     rest.trim().is_empty().then_some(found)
 }
 
 fn bracketed(rest: &mut &str, depth: usize) -> Option<Value> {
     *rest = rest.trim_start();
-    if depth > 8 {
+    if depth > DEPTH {
         return None;
     }
     let Some(inside) = rest.strip_prefix('[') else {
@@ -254,12 +260,13 @@ mod tests {
     fn lists_are_read_in_brackets_and_behind_hyphens() {
         let word = |text: &str| Value::Word(text.to_owned());
         let pair = Value::List(vec![word("a"), word("b c")]);
-        assert_eq!(value(" ['a', \"b c\"]"), Some(pair.clone()));
+        assert_eq!(value(" ['a', \"b c\"]", 0), Some(pair.clone()));
         assert_eq!(
-            value("[[a, b c],\n [a, b c]]"),
+            value("[[a, b c],\n [a, b c]]", 0),
             Some(Value::List(vec![pair.clone(), pair.clone()]))
         );
-        assert_eq!(value("\n- a\n- b c"), Some(pair));
-        assert_eq!(value("[a, [b]"), None);
+        assert_eq!(value("\n- a\n- b c", 0), Some(pair));
+        assert_eq!(value("[a, [b]", 0), None);
+        assert_eq!(value(&"- ".repeat(100_000), 0), None);
     }
 }

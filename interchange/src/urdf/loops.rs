@@ -4,6 +4,7 @@
 use super::{Tree, joints, origin};
 use crate::{
     files::Files,
+    geometry::exact,
     model::{Closure, ClosureKind, Follow, Model, Pose},
     xml::Element,
 };
@@ -95,7 +96,7 @@ fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> 
         return joints::axis(files, element);
     }
     let [x, y, z] = element.child(tag)?.numbers(files, "xyz")?;
-    Vector3::new(x, y, z).try_normalize(1e-9)
+    exact::unit(&Vector3::new(x, y, z), exact::SHORTEST)
 }
 
 /// A frame whose z axis is the given one.

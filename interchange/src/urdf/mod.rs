@@ -5,6 +5,7 @@ mod joints;
 mod loops;
 
 use crate::{
+    bounds,
     files::{Files, Place},
     geometry::exact,
     model::{Body, Inertia, Model, Pose},
@@ -26,6 +27,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         files.report(&root.place, message, "the first element of URDF is <robot>");
         return None;
     }
+    bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("name").unwrap_or("robot"));
     let links = links(files, &root);
     let tree = joints::tree(files, &root, &links, options, &mut model)?;

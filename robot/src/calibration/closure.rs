@@ -10,7 +10,7 @@ use crate::interpreted::InterpretedRobot;
 use nalgebra::{DMatrix, DVector, Isometry3, Vector3};
 use overact::{Error, Function, Model};
 use overact_codegen::mechanism::{
-    Leg, Mechanism, TwistCoordinate,
+    Leg, Mechanism, Motion, TwistCoordinate,
     numeric::{platform_frame, target},
     placement_isometry,
 };
@@ -33,6 +33,8 @@ const LONGEST_STEP: f64 = 0.5;
 pub(crate) struct MechanismGeometry<'a> {
     model: &'a InterpretedRobot,
     mechanism: &'a Mechanism,
+    /// How the platform moves.
+    motion: Motion,
     lengths: Vec<LegLength>,
     parameters: Vec<GeometryParameter>,
     /// For each leg the components of its end's motion that count.
@@ -40,23 +42,20 @@ pub(crate) struct MechanismGeometry<'a> {
 }
 
 impl<'a> MechanismGeometry<'a> {
-    /// That of a described robot.
-    pub(crate) fn new(model: &'a InterpretedRobot) -> Self {
+    /// The geometry of a described robot; `None` without a platform, on which legs end.
+    pub(crate) fn new(model: &'a InterpretedRobot) -> Option<Self> {
         let mechanism = &model.model().mechanism;
+        let motion = mechanism.platform.as_ref()?.motion;
         let (lengths, parameters) = lengths(mechanism);
-        let rows = match mechanism.platform {
-            Some(_) => (0..mechanism.legs.len())
-                .map(|leg| mechanism.closure_rows(leg))
-                .collect(),
-            None => Vec::new(),
-        };
-        Self {
+        let legs = 0..mechanism.legs.len();
+        Some(Self {
             model,
             mechanism,
+            motion,
             lengths,
             parameters,
-            rows,
-        }
+            rows: legs.map(|leg| mechanism.closure_rows(leg)).collect(),
+        })
     }
 
     /// A leg with changed lengths.
@@ -114,7 +113,7 @@ impl ChangedMechanism<'_> {
         let frames = leg.frames(q);
         let last = frames.last()?;
         let jacobian = leg.end_jacobian_at(&frames).select_rows(rows).lu();
-        let motion = self.described.mechanism.platform.as_ref()?.motion;
+        let motion = self.described.motion;
         let arm = last.translation.vector - platform.translation.vector;
         let twists: Vec<DVector<f64>> = motion
             .twist()
@@ -243,10 +242,7 @@ impl ChangedGeometry for ChangedMechanism<'_> {
         reached.positions.clear();
         reached.by_pose = DMatrix::zeros(n, r);
         reached.by_parameter = DMatrix::zeros(n, m);
-        let Some(motion) = mechanism.platform.as_ref().map(|own| own.motion) else {
-            return Ok(());
-        };
-        let platform = platform_frame(motion, pose);
+        let platform = platform_frame(self.described.motion, pose);
         let mut actuators = info.actuated_joints.iter().enumerate().peekable();
         for (index, leg) in self.legs.iter().enumerate() {
             let Some(end) = &leg.end else { continue };

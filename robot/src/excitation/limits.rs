@@ -26,6 +26,9 @@ const REACH_SHARE: f64 = 0.5;
 /// The first step along a coordinate when the reach is found out, m or rad, its growth and the last one.
 const REACH: [f64; 3] = [1e-3, 1.1, 1.5];
 
+/// The shortest first step, m or rad, of coordinates that do not reach that of [`REACH`].
+const SHORTEST_REACH: f64 = 1e-6;
+
 /// Where a limit comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -201,15 +204,20 @@ fn torque_share(description: &Description) -> Option<Vec<f64>> {
 fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
     let dof = bench.info.sizes.dof;
     let along = |coordinate: usize, sign: f64| {
-        let [mut at, growth, last] = REACH;
-        let mut good = 0.0;
-        while at < last {
+        let is_reached = |distance: f64| {
             let mut step = vec![0.0; dof];
-            step[coordinate] = sign * at;
-            match bench.condition_at(&step) {
-                Some(found) if found <= condition => good = at,
-                _ => break,
-            }
+            step[coordinate] = sign * distance;
+            let found = bench.condition_at(&step);
+            found.is_some_and(|found| found <= condition)
+        };
+        let [mut at, growth, last] = REACH;
+        // A small robot may not reach the usual first step.
+        while !is_reached(at) && at > SHORTEST_REACH {
+            at /= 2.0;
+        }
+        let mut good = 0.0;
+        while at < last && is_reached(at) {
+            good = at;
             at *= growth;
         }
         good

@@ -128,6 +128,10 @@ impl<'a> Search<'a> {
     /// that were found so far, one at least where there is any.
     pub(super) fn random(&self, series: &Series<'_>, random: &mut Pcg64) -> Vec<Candidate> {
         let mut found = Vec::new();
+        // Where no coordinate may move there is nothing to draw.
+        if series.len() == 0 {
+            return found;
+        }
         'all: for _ in 0..ATTEMPTS / RANDOM {
             let draw = |_| {
                 (0..series.len())
@@ -259,6 +263,10 @@ impl<'a> Search<'a> {
         let mut factor = 1.0;
         for _ in 0..SETTLING {
             let trajectory = series.rounded(&series.scaled(trajectory, factor));
+            // Amplitudes below the written digits are no motion.
+            if is_standstill(&trajectory) {
+                return None;
+            }
             let course = self.bench.course(series.frame, &trajectory, samples);
             let worst = course.map_or(f64::INFINITY, |course| {
                 largest(&uses(&course, self.limits, true))
@@ -322,6 +330,11 @@ pub(super) fn added(before: &[DMatrix<f64>], own: &[DMatrix<f64>]) -> Vec<DMatri
         true => own.to_vec(),
         false => before.iter().zip(own).map(|(a, b)| a + b).collect(),
     }
+}
+
+/// Whether a series has no terms.
+fn is_standstill(trajectory: &Trajectory) -> bool {
+    matches!(trajectory, Trajectory::Periodic { terms, .. } if terms.is_empty())
 }
 
 fn largest(uses: &[f64]) -> f64 {

@@ -194,3 +194,36 @@ fn a_calibrated_dualv_has_its_parameters_again() {
         assert!(covered >= 8, "{errors:?}");
     }
 }
+
+#[test]
+fn encoder_offsets_of_robots_without_a_platform_are_calibrated() {
+    let described = robot(&text("four_bar.toml"));
+    let offset = 2e-3;
+    let runs = described.experiment().expect("runs").runs(&[], &|_, _| {});
+    let run = runs.expect("virtual runs").remove(0);
+    for scope in [
+        CalibrationScope::Smallest,
+        CalibrationScope::Offsets,
+        CalibrationScope::All,
+    ] {
+        let shifted = run.clone().without_offsets(&[0.0, -offset]);
+        let found = described
+            .calibrate(&[shifted], scope)
+            .expect("a calibration");
+        let names: Vec<&str> = found
+            .estimated
+            .iter()
+            .map(|one| one.name.as_str())
+            .collect();
+        assert!(names.contains(&"offset_output"), "{names:?}");
+        assert!(
+            names.iter().all(|name| name.starts_with("offset_")),
+            "{names:?}"
+        );
+        let is_told = |remark: &String| remark.contains("robots with a platform only");
+        assert!(found.remarks.iter().any(is_told), "{:?}", found.remarks);
+        if scope == CalibrationScope::Smallest {
+            check(&found, &[("offset_output", offset)]);
+        }
+    }
+}

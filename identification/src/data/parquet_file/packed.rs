@@ -12,6 +12,9 @@ use parquet::{
 };
 use ruzstd::decoding::StreamingDecoder;
 
+/// Bytes of a page when it is unpacked, at most; usual ones have a megabyte.
+const LARGEST_PAGE: u64 = 1 << 27;
+
 /// How the pages of a column are packed, where the library does not unpack them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Method {
@@ -23,7 +26,7 @@ enum Method {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packing {
     method: Method,
-    /// Bytes of the whole column when it is unpacked.
+    /// Bytes of the whole column when it is unpacked, or of the largest page that is unpacked.
     most: u64,
 }
 
@@ -36,6 +39,7 @@ impl Packing {
             _ => return None,
         };
         let most = u64::try_from(chunk.uncompressed_size()).unwrap_or(0);
+        let most = most.min(LARGEST_PAGE);
         Some(Self { method, most })
     }
 
@@ -84,7 +88,10 @@ impl Packing {
                 Method::Zstandard => zstandard(&mut packed, most, &mut page)?,
             }
             if page.len() as u64 > self.most {
-                return Err(String::from("a page is larger than its column"));
+                let largest = LARGEST_PAGE >> 20;
+                return Err(format!(
+                    "a page is larger than its column, or than {largest} MB"
+                ));
             }
         }
         Ok(page)

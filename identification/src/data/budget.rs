@@ -1,0 +1,85 @@
+//! How much a packed file may unpack to: a few megabytes may hold as many gigabytes of zeros.
+
+use std::io::{Read, Take};
+
+/// Bytes that a file may unpack to beyond its own size.
+const UNPACKED: u64 = 1 << 28;
+
+/// Bytes that the members of a file may still unpack to.
+#[derive(Debug)]
+pub(super) struct Budget {
+    left: u64,
+}
+
+impl Budget {
+    /// The budget of a file of these bytes: what is stored unpacked is limited by the file itself.
+    pub(super) const fn of_file(bytes: &[u8]) -> Self {
+        Self {
+            left: UNPACKED + bytes.len() as u64,
+        }
+    }
+
+    /// A budget of so many bytes.
+    #[cfg(test)]
+    pub(super) const fn with(left: u64) -> Self {
+        Self { left }
+    }
+
+    /// Takes so many bytes from the budget.
+    ///
+    /// # Errors
+    /// A sentence, if fewer are left.
+    pub(super) fn take(&mut self, bytes: u64) -> Result<(), String> {
+        self.left = self.left.checked_sub(bytes).ok_or_else(too_large)?;
+        Ok(())
+    }
+
+    /// An input that ends where nothing is left; [`settle`](Self::settle) takes what was read of it.
+    pub(super) fn limited<R: Read>(&self, input: R) -> Take<R> {
+        input.take(self.left + 1)
+    }
+
+    /// Takes what was read of a limited input.
+    ///
+    /// # Errors
+    /// A sentence, if it was longer than what was left.
+    pub(super) fn settle<R>(&mut self, input: &Take<R>) -> Result<(), String> {
+        self.take(self.left + 1 - input.limit())
+    }
+
+    /// Reads to the end.
+    ///
+    /// # Errors
+    /// A sentence, if the input is broken or longer than what is left.
+    pub(super) fn unpack(&mut self, input: impl Read) -> Result<Vec<u8>, String> {
+        let mut bytes = Vec::new();
+        let read = self.limited(input).read_to_end(&mut bytes);
+        read.map_err(|_| String::from("it is broken"))?;
+        self.take(bytes.len() as u64)?;
+        Ok(bytes)
+    }
+}
+
+fn too_large() -> String {
+    format!(
+        "unpacked it has more than {} MB: save it without compression, or as Parquet, which is read block by block",
+        UNPACKED >> 20
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Budget, UNPACKED};
+
+    #[test]
+    fn a_budget_ends_before_the_input_is_read() {
+        let mut budget = Budget::of_file(&[]);
+        assert!(budget.take(UNPACKED - 1).is_ok());
+        assert_eq!(budget.unpack(&[7_u8][..]), Ok(vec![7]));
+        let refused = budget
+            .unpack(std::io::repeat(0))
+            .expect_err("nothing is left");
+        assert!(refused.contains("256 MB"), "{refused}");
+        assert!(budget.take(1).is_err());
+    }
+}

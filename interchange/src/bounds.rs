@@ -1,0 +1,143 @@
+//! Numbers of a file that no robot has, and robots that are too large, refused before anything is computed from them.
+
+use crate::{
+    files::{Files, Place},
+    model::{Body, ClosureKind, Joint, Model, Pose},
+    xml::Element,
+};
+
+/// Lengths, masses and other numbers are smaller, in SI units: squares of larger ones soon are beyond all numbers.
+const LARGEST: f64 = 1e15;
+/// Joints that move, at most: as many as a description may have.
+const MOST_JOINTS: usize = 200;
+
+/// Elements of joints, fixed ones among them, at most.
+const MOST_JOINT_ELEMENTS: usize = 2_000;
+/// Elements of bodies, at most.
+const MOST_BODY_ELEMENTS: usize = 10_000;
+
+/// Refuses files with more joints and bodies than a robot has, before they are compared with one another; `None`
+/// after an error.
+pub(crate) fn check_elements(files: &Files, root: &Element) -> Option<()> {
+    let limits = [
+        ("joints", &["joint", "freejoint"], MOST_JOINT_ELEMENTS),
+        ("bodies", &["body", "link"], MOST_BODY_ELEMENTS),
+    ];
+    for (what, names, most) in limits {
+        let count = count(root, names);
+        if count > most {
+            let message = format!("the file has {count} {what}, more than {most}");
+            files.report(&root.place, message, "import the robot in parts");
+            return None;
+        }
+    }
+    Some(())
+}
+
+/// How many elements have one of these names.
+fn count(element: &Element, names: &[&str]) -> usize {
+    let inside = element.children.iter().map(|child| count(child, names));
+    inside.sum::<usize>() + usize::from(names.contains(&element.name.as_str()))
+}
+
+/// Refuses what is out of bounds; `None` after an error.
+pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
+    if model.joints.len() > MOST_JOINTS {
+        let message = format!(
+            "the robot has {} joints that move, more than {MOST_JOINTS}",
+            model.joints.len()
+        );
+        files.refuse(
+            message,
+            "fix joints that need not move, or import it in parts",
+        );
+    }
+    for body in &model.bodies {
+        let joint = body.joint.map(|joint| &model.joints[joint].place);
+        if !body_numbers(body).into_iter().all(is_in_bounds) {
+            let message = format!("`{}` has a number beyond {LARGEST:e}", body.name);
+            report(files, body.place.as_ref().or(joint), message);
+        }
+    }
+    for joint in &model.joints {
+        if !joint_numbers(joint).into_iter().all(is_in_bounds) {
+            let message = format!("the joint `{}` has a number beyond {LARGEST:e}", joint.name);
+            report(files, Some(&joint.place), message);
+        }
+        if joint.follow.is_some_and(|follow| follow.factor == 0.0) {
+            let message = format!(
+                "the joint `{}` follows another with the factor 0: it does not move",
+                joint.name
+            );
+            let help = "write it as a fixed joint, or give another factor";
+            files.report(&joint.place, message, help);
+        }
+    }
+    for closure in &model.closures {
+        let numbers: Vec<f64> = match &closure.kind {
+            ClosureKind::Point { at, .. } => at.iter().flat_map(|at| at.coords.data.0[0]).collect(),
+            ClosureKind::Weld { at, .. } | ClosureKind::Pin { at, .. } => {
+                at.iter().flat_map(pose_numbers).collect()
+            }
+        };
+        if !numbers.into_iter().all(is_in_bounds) {
+            let message = format!("`{}` has a number beyond {LARGEST:e}", closure.name);
+            report(files, Some(&closure.place), message);
+        }
+    }
+    if !model.gravity.into_iter().all(is_in_bounds) {
+        report(
+            files,
+            None,
+            format!("gravity has a number beyond {LARGEST:e}"),
+        );
+    }
+    files.is_clean().then_some(())
+}
+
+fn report(files: &Files, place: Option<&Place>, message: String) {
+    let help = "give lengths in m, angles in rad, masses in kg and inertias in kg m^2";
+    match place {
+        Some(place) => files.report(place, message, help),
+        None => files.refuse(message, help),
+    }
+}
+
+/// Whether a number is finite and of a size that robots have.
+fn is_in_bounds(number: f64) -> bool {
+    number.abs() < LARGEST
+}
+
+fn body_numbers(body: &Body) -> Vec<f64> {
+    let mut numbers = pose_numbers(&body.placement);
+    if let Some(own) = &body.inertia {
+        numbers.push(own.mass);
+        numbers.extend(own.centre.coords.iter().chain(own.tensor.iter()));
+    }
+    numbers
+}
+
+fn joint_numbers(joint: &Joint) -> Vec<f64> {
+    let mut numbers = vec![
+        joint.reference,
+        joint.home,
+        joint.damping,
+        joint.friction,
+        joint.armature,
+    ];
+    numbers.extend(joint.axis.iter().chain(joint.at.coords.iter()));
+    numbers.extend(
+        joint
+            .spring
+            .iter()
+            .flat_map(|(stiffness, rest)| [*stiffness, *rest]),
+    );
+    numbers.extend(joint.follow.iter().flat_map(|own| [own.factor, own.offset]));
+    numbers
+}
+
+fn pose_numbers(pose: &Pose) -> Vec<f64> {
+    let rotation = pose.rotation.matrix().iter();
+    let numbers = rotation.chain(pose.translation.vector.iter());
+    numbers.copied().collect()
+}
