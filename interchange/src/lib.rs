@@ -11,6 +11,7 @@
 //! | `export` | the file and parameters | the file with these parameters |
 
 mod assembly;
+mod couplings;
 mod experiment;
 mod export;
 mod files;

@@ -200,7 +200,7 @@ fn axes_follow_axes() {
         said(&one_joint("revolute", Z, &mimic("l")))
             .contains("no axis `axis` of a joint `l` to follow")
     );
-    assert!(said(&one_joint("revolute", Z, &mimic("k"))).contains("in a circle or a row"));
+    assert!(said(&one_joint("revolute", Z, &mimic("k"))).contains("in a cycle: `k`, `k`"));
     let gears = |reference: &str| {
         format!(
             "<link name='b'/><link name='c'/>\

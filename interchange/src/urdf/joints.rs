@@ -2,9 +2,10 @@
 
 use super::{Links, Tree, body, origin};
 use crate::{
+    couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
-    model::{Follow, Joint, Kind, Model, Pose},
+    model::{Joint, Kind, Model, Pose},
     options::Options,
     xml::Element,
 };
@@ -203,37 +204,31 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     found
 }
 
-/// Joints that follow others.
-pub(super) fn follow(files: &Files, root: &Element, model: &mut Model) {
+/// The relations of `<mimic>`.
+pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("joint") {
         let Some(mimic) = element.child("mimic") else {
             continue;
         };
         let own = element.get("name").and_then(|name| model.joint_named(name));
-        let Some(own) = own else { continue };
+        let Some(follower) = own else {
+            continue;
+        };
         let Some(name) = mimic.required(files, "joint") else {
             continue;
         };
-        let Some(joint) = model.joint_named(name).filter(|&joint| joint != own) else {
+        let Some(leader) = model.joint_named(name) else {
             let message = format!("there is no joint `{name}` that moves to follow");
-            files.report(
-                &mimic.place,
-                message,
-                "name another joint that is not fixed",
-            );
+            let help = "name another joint that is not fixed";
+            files.report(&mimic.place, message, help);
             continue;
         };
-        if model.joints[joint].follow.is_some() {
-            let help = "let each joint follow one that follows none";
-            files.report(&mimic.place, "joints follow each other in a row", help);
-            continue;
-        }
-        let factor = mimic.number(files, "multiplier", 1.0);
-        let offset = mimic.number(files, "offset", 0.0);
-        model.joints[own].follow = Some(Follow {
-            joint,
-            factor,
-            offset,
+        couplings.add(Coupling {
+            follower,
+            leader,
+            factor: mimic.number(files, "multiplier", 1.0),
+            offset: mimic.number(files, "offset", 0.0),
+            place: mimic.place.clone(),
         });
     }
 }

@@ -3,8 +3,9 @@
 
 use super::{Tree, joints, origin};
 use crate::{
+    couplings::{Coupling, Couplings},
     files::Files,
-    model::{Closure, ClosureKind, Follow, Model, Pose},
+    model::{Closure, ClosureKind, Model, Pose},
     xml::Element,
 };
 use nalgebra::{Point3, Rotation3, Vector3};
@@ -41,7 +42,6 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
             });
         }
     }
-    couplings(files, root, model);
 }
 
 /// Elements of closures, those of their two ends, and those of the frames on them (in the end itself where empty).
@@ -107,11 +107,12 @@ fn upright(axis: &Vector3<f64>) -> Pose {
 }
 
 /// `<coupling>` of URDF+: the motion between two links follows that between others, by a ratio.
-fn couplings(files: &Files, root: &Element, model: &mut Model) {
+pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("coupling") {
         let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));
         let joint = |link: Option<&str>| model.bodies[model.body_named(link?)?].joint;
-        let (Some(leader), Some(own)) = (joint(end("predecessor")), joint(end("successor"))) else {
+        let (Some(leader), Some(follower)) = (joint(end("predecessor")), joint(end("successor")))
+        else {
             let message = "the coupling does not join two links that joints carry";
             let help = "name links behind moving joints, or write the coupling as <mimic>";
             files.report(&element.place, message, help);
@@ -120,19 +121,12 @@ fn couplings(files: &Files, root: &Element, model: &mut Model) {
         let ratio = element
             .child("ratio")
             .map_or(1.0, |ratio| ratio.number(files, "value", 1.0));
-        if leader == own || model.joints[leader].follow.is_some() {
-            let message = "the coupling's joints follow each other";
-            files.report(
-                &element.place,
-                message,
-                "let one joint follow one that follows none",
-            );
-            continue;
-        }
-        model.joints[own].follow = Some(Follow {
-            joint: leader,
+        couplings.add(Coupling {
+            follower,
+            leader,
             factor: ratio,
             offset: 0.0,
+            place: element.place.clone(),
         });
     }
 }

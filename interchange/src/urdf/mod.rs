@@ -5,6 +5,7 @@ mod joints;
 mod loops;
 
 use crate::{
+    couplings::Couplings,
     files::{Files, Place},
     geometry::exact,
     model::{Body, Inertia, Model, Pose},
@@ -29,10 +30,14 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     let mut model = Model::new(root.get("name").unwrap_or("robot"));
     let links = links(files, &root);
     let tree = joints::tree(files, &root, &links, options, &mut model)?;
-    joints::follow(files, &root, &mut model);
     joints::motors(&root, &mut model);
     loops::read(files, &root, &tree, &mut model);
     beside::read(files, file, &tree, &mut model);
+    // After the file beside, which may turn joints into balls.
+    let mut couplings = Couplings::default();
+    joints::mimics(files, &root, &model, &mut couplings);
+    loops::couplings(files, &root, &model, &mut couplings);
+    couplings.resolve(files, &mut model);
     files.is_clean().then_some(model)
 }
 
