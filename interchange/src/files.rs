@@ -1,5 +1,6 @@
 //! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
 
+use crate::account::{Account, Ledger, Use};
 use overact_codegen::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 use std::{
     cell::RefCell,
@@ -27,6 +28,7 @@ pub struct Errors(pub Vec<(Source, Diagnostics)>);
 #[derive(Debug, Default)]
 pub(crate) struct Files {
     read: RefCell<Vec<(PathBuf, Source, Diagnostics)>>,
+    ledger: RefCell<Ledger>,
 }
 
 impl Files {
@@ -106,6 +108,48 @@ impl Files {
     ) {
         let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(help);
         self.read.borrow_mut()[place.file].2.push(error);
+    }
+
+    /// Records what became of an element, or of an attribute of it.
+    pub(crate) fn record(
+        &self,
+        kind: Use,
+        place: &Place,
+        element: &str,
+        attribute: Option<&str>,
+        reason: &str,
+    ) {
+        let attribute = attribute.map(str::to_owned);
+        let key = (
+            kind,
+            place.file,
+            element.to_owned(),
+            attribute,
+            reason.to_owned(),
+        );
+        self.ledger.borrow_mut().add(key, place.span.start);
+    }
+
+    /// Reports an element or attribute that was read but does not become part of the description.
+    pub(crate) fn demote(
+        &self,
+        place: &Place,
+        element: &str,
+        attribute: Option<&str>,
+        reason: &str,
+    ) {
+        self.ledger
+            .borrow_mut()
+            .retract(place.file, element, attribute);
+        self.record(Use::Reported, place, element, attribute, reason);
+    }
+
+    /// What was used of the files, and what was not.
+    pub(crate) fn account(&self) -> Account {
+        self.ledger.borrow().account(|file, at| {
+            let place = Place { file, span: at..at };
+            (self.name(file), self.line(&place))
+        })
     }
 
     /// Notes errors that were found in a file elsewhere.

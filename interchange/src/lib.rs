@@ -4,17 +4,22 @@
 //! | stage | from | to |
 //! |---|---|---|
 //! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
+//! | `account` | elements and attributes | what is honoured, ignored, reported or rejected |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
 //! | `experiment` | the closed robot | motions inside the limits of its joints |
 //! | `writing` | all of it | TOML with a comment at each choice |
 //! | `export` | the file and parameters | the file with these parameters |
 
+mod account;
+#[cfg(test)]
+mod agreement;
 mod assembly;
 mod couplings;
 mod experiment;
 mod export;
 mod files;
+mod format;
 mod frames;
 mod geometry;
 mod import;
@@ -23,12 +28,16 @@ mod model;
 mod options;
 mod par;
 mod plan;
+mod prune;
 mod sdf;
+mod unsupported;
 mod urdf;
 mod writing;
 mod xml;
 
+pub use account::{Account, Entry};
 pub use export::{Exported, export};
 pub use files::Errors;
-pub use import::{Format, Imported, import};
+pub use format::Format;
+pub use import::{Imported, import};
 pub use options::Options;

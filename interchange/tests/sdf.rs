@@ -68,9 +68,12 @@ fn the_arm_is_that_of_urdf() {
             _ => assert_eq!(urdf, own),
         }
     }
-    assert!(sdf.contains("Not read: `model://sun`."), "{sdf}");
     assert!(
-        sdf.contains("Plugins are not read, nor which joints they drive: `libdrives.so`."),
+        sdf.contains("include uri: `model://sun` is not read"),
+        "{sdf}"
+    );
+    assert!(
+        sdf.contains("plugin: `libdrives.so` is not read, nor which joints it drives"),
         "{sdf}"
     );
 }

@@ -149,10 +149,15 @@ const HOUSES: [House; 7] = [
         folder: "interchange",
         order: &[
             "options",
+            "format",
+            "account",
             "files",
             "xml",
+            "prune",
             "geometry",
             "model",
+            "couplings",
+            "unsupported",
             "assembly",
             "frames",
             "plan",
@@ -164,6 +169,7 @@ const HOUSES: [House; 7] = [
             "writing",
             "import",
             "export",
+            "agreement",
         ],
     },
     House {

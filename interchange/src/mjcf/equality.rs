@@ -1,7 +1,11 @@
 //! Equality constraints: points and frames that meet, and joints that follow others.
 
-use super::{Reader, Sites, defaults::MAIN};
+use super::{
+    Reader, Sites,
+    defaults::{EQUALITY, MAIN},
+};
 use crate::{
+    account::Use,
     assembly::motion::Motion,
     couplings::{Coupling, Couplings},
     model::{Closure, ClosureKind, Model, Pose},
@@ -15,12 +19,15 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
     let mut couplings = Couplings::default();
     for section in root.all("equality") {
         for element in &section.children {
-            let whole = reader.defaults.apply(reader.files, element, MAIN);
+            let whole = reader
+                .defaults
+                .apply_as(EQUALITY, reader.files, element, MAIN);
             if whole.get("active") == Some("false") {
-                model.notes.push(format!(
-                    "The inactive equality `{}` is left out.",
-                    named(&whole)
-                ));
+                let reason = "inactive";
+                let tag = &whole.name;
+                reader
+                    .files
+                    .record(Use::Ignored, &whole.place, tag, None, reason);
                 continue;
             }
             match whole.name.as_str() {

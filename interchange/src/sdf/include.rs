@@ -1,8 +1,10 @@
 //! `<include>`: the model of another file, which has to lie beside or beneath the one that includes it.
 
-use super::{SKIPPED, value::text, version};
+use super::{value::text, version};
 use crate::{
+    account::SDF,
     files::{Files, Place},
+    prune::keep_honoured,
     xml::{self, Element},
 };
 use std::path::{Path, PathBuf};
@@ -35,12 +37,6 @@ pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Includ
         files.report(&element.place, message, "write <uri>FILE</uri>");
         return Included::Error;
     };
-    if let Some(params) = element.child("params") {
-        let message = "an <include> that changes what it includes can't be said";
-        let help = "write the model out: `gz sdf -p FILE` does";
-        files.report(&params.place, message, help);
-        return Included::Error;
-    }
     let Some(path) = beneath(uri, open) else {
         return Included::Elsewhere(uri.to_owned(), place.clone());
     };
@@ -103,7 +99,8 @@ fn included(
         return None;
     }
     let file = files.read(path, Some(place))?;
-    let root = xml::parse(files, file, &SKIPPED)?;
+    let mut root = xml::parse(files, file)?;
+    keep_honoured(files, &SDF, &mut root);
     let version = version(files, &root)?;
     let mut models = root.all("model");
     let (Some(model), None) = (models.next(), models.next()) else {

@@ -2,6 +2,7 @@
 
 use super::{Links, Tree, body, origin};
 use crate::{
+    account::Use,
     couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
@@ -212,6 +213,8 @@ pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &m
         };
         let own = element.get("name").and_then(|name| model.joint_named(name));
         let Some(follower) = own else {
+            let reason = "the joint does not move";
+            files.record(Use::Ignored, &mimic.place, "mimic", None, reason);
             continue;
         };
         let Some(name) = mimic.required(files, "joint") else {
@@ -230,24 +233,5 @@ pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &m
             offset: mimic.number(files, "offset", 0.0),
             place: mimic.place.clone(),
         });
-    }
-}
-
-/// Which joints `<transmission>` drives.
-pub(super) fn motors(root: &Element, model: &mut Model) {
-    for transmission in root.all("transmission") {
-        let reduction = transmission
-            .child("actuator")
-            .and_then(|a| a.child("mechanicalReduction"));
-        for joint in transmission.all("joint") {
-            let Some(at) = joint.get("name").and_then(|name| model.joint_named(name)) else {
-                continue;
-            };
-            model.says_motors = true;
-            model.joints[at].actuated = true;
-            if reduction.is_some() {
-                "through a gear, see its <transmission>".clone_into(&mut model.joints[at].drive);
-            }
-        }
     }
 }

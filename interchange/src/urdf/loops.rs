@@ -12,6 +12,7 @@ use nalgebra::{Point3, Rotation3, Vector3};
 
 pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
     let named = |element: &Element| element.get("name").unwrap_or(&element.name).to_owned();
+    ball_constraints(files, root, tree, model);
     for (tag, ends, frames) in NOTATIONS {
         for element in root.all(tag) {
             let frame = |at: usize| {
@@ -41,6 +42,35 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
                 place,
             });
         }
+    }
+}
+
+/// `<drake:ball_constraint>`: a point of one body that coincides with a point of another.
+fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
+    for element in root.all("ball_constraint") {
+        let end = |body: &str, point: &str| {
+            let body = element.child(body)?;
+            let body = tree.find(files, model, body.required(files, "name")?, &body.place)?;
+            let point = element.child(point);
+            let point = point.map_or(Some([0.0; 3]), |point| point.numbers(files, "value"))?;
+            Some((body, Point3::from(point)))
+        };
+        let first = end("ball_constraint_body_A", "ball_constraint_p_AP");
+        let second = end("ball_constraint_body_B", "ball_constraint_p_BQ");
+        let (Some(first), Some(second)) = (first, second) else {
+            let message = "the constraint does not say which points of which links coincide";
+            let help = "give drake:ball_constraint_body_A, _p_AP, _body_B and _p_BQ";
+            files.report(&element.place, message, help);
+            continue;
+        };
+        model.closures.push(Closure {
+            name: element.name.clone(),
+            kind: ClosureKind::Point {
+                bodies: [first.0, second.0],
+                at: [first.1, second.1],
+            },
+            place: element.place.clone(),
+        });
     }
 }
 
