@@ -312,3 +312,61 @@ fn a_description_that_check_refuses_is_not_written() {
     );
     assert_eq!(bench.files(), ["long.urdf"]);
 }
+
+/// A hinge of MJCF with attributes that the import does not use.
+const COMPENSATED: &str = "<mujoco model='arm'><compiler angle='radian'/><option timestep='0.001' density='1'/>\n\
+    <worldbody><body name='a' gravcomp='1'><joint name='j' axis='0 1 0'/>\n\
+    <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.02 0.02'/><strange/><strange/></body></worldbody>\n\
+    <actuator><motor joint='j'/></actuator></mujoco>";
+
+#[test]
+fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
+    let bench = Bench::new();
+    bench.write("arm.xml", COMPENSATED);
+    let outcome = bench.run(&["import", "arm.xml", "-o", "my.toml"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let notes: Vec<&str> = outcome.err.lines().collect();
+    assert_eq!(notes.len(), 3, "{notes:?}");
+    for (note, start) in notes.iter().zip([
+        "note: arm.xml:1: option density: reported: forces of a fluid",
+        "note: arm.xml:2: body gravcomp: reported: its compensation",
+        "note: arm.xml:3: strange: reported: not in the specification",
+    ]) {
+        assert!(note.starts_with(start), "{note}");
+    }
+    assert!(notes[2].ends_with("(2 times)"), "{notes:?}");
+    assert!(
+        bench
+            .read("my.toml")
+            .contains("# - line 2: body gravcomp: ")
+    );
+    let quiet = bench.run(&["-q", "import", "arm.xml"]);
+    assert_eq!((quiet.code, quiet.err.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn the_json_of_an_import_lists_what_became_of_the_file() {
+    let bench = Bench::new();
+    bench.write("arm.xml", COMPENSATED);
+    let document = bench.json(&["import", "arm.xml", "-o", "my.toml"]);
+    assert_eq!(document["robot"], "arm");
+    assert_eq!(document["description"], bench.read("my.toml"));
+    let has = |list: &str, element: &str, attribute: Option<&str>| {
+        let all = document[list].as_array().expect("a list");
+        let is_meant = |entry: &&serde_json::Value| {
+            entry["element"] == element && entry["attribute"].as_str() == attribute
+        };
+        let entry = all.iter().find(is_meant).expect("an entry");
+        assert!(
+            entry["line"].is_u64() && entry["reason"].is_string(),
+            "{entry}"
+        );
+    };
+    has("honoured", "inertial", Some("mass"));
+    has("ignored", "option", Some("timestep"));
+    has("reported", "body", Some("gravcomp"));
+    has("reported", "strange", None);
+    for list in ["misfits", "spins"] {
+        assert!(document[list].is_array(), "{list}");
+    }
+}

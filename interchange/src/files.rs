@@ -1,5 +1,6 @@
 //! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
 
+use crate::account::{Account, Ledger, Use};
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 use std::{
     cell::{Cell, RefCell},
@@ -37,6 +38,7 @@ pub(crate) struct Files {
     bytes_left: Cell<u64>,
     /// Elements that may still be read.
     elements_left: Cell<usize>,
+    ledger: RefCell<Ledger>,
 }
 
 impl Default for Files {
@@ -45,6 +47,7 @@ impl Default for Files {
             read: RefCell::default(),
             bytes_left: Cell::new(MOST_BYTES),
             elements_left: Cell::new(MOST_ELEMENTS),
+            ledger: RefCell::default(),
         }
     }
 }
@@ -151,6 +154,48 @@ impl Files {
         if errors.len() < MOST_ERRORS {
             errors.push(error);
         }
+    }
+
+    /// Records what became of an element, or of an attribute of it.
+    pub(crate) fn record(
+        &self,
+        kind: Use,
+        place: &Place,
+        element: &str,
+        attribute: Option<&str>,
+        reason: &str,
+    ) {
+        let attribute = attribute.map(str::to_owned);
+        let key = (
+            kind,
+            place.file,
+            element.to_owned(),
+            attribute,
+            reason.to_owned(),
+        );
+        self.ledger.borrow_mut().add(key, place.span.start);
+    }
+
+    /// Reports an element or attribute that was read but does not become part of the description.
+    pub(crate) fn demote(
+        &self,
+        place: &Place,
+        element: &str,
+        attribute: Option<&str>,
+        reason: &str,
+    ) {
+        self.ledger
+            .borrow_mut()
+            .retract(place.file, element, attribute);
+        self.record(Use::Reported, place, element, attribute, reason);
+    }
+
+    /// What was used of the files, and what was not.
+    pub(crate) fn account(&self) -> Account {
+        self.ledger.borrow().account(|file, at| {
+            let place = Place { file, span: at..at };
+            (self.name(file), self.line(&place))
+        })
     }
 
     /// Notes errors that were found in a file elsewhere.

@@ -1,6 +1,7 @@
 //! The import from a file to a description.
 
 use crate::{
+    account::Account,
     assembly::{
         idle,
         layout::{self, Layout},
@@ -10,13 +11,14 @@ use crate::{
     bounds,
     experiment::{self, Experiment},
     files::{Errors, Files},
+    format::Format,
     mjcf,
     model::Model,
     options::Options,
     origins::Origins,
     par,
     plan::Plan,
-    sdf, urdf,
+    sdf, unsupported, urdf,
     writing::{self, Written},
     xml,
 };
@@ -32,6 +34,10 @@ pub struct Imported {
     pub inputs: Vec<PathBuf>,
     /// What the parts of the text come from.
     origins: Origins,
+    /// Name of the robot in the file, or that of the options.
+    pub name: String,
+    /// What of the files was used, and what was not.
+    pub account: Account,
 }
 
 impl Imported {
@@ -52,34 +58,39 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
     let files = Files::default();
     let described = described(&files, path, options);
     match described.filter(|_| files.is_clean()) {
-        Some((text, origins)) => Ok(Imported {
+        Some(Described {
+            name,
+            text,
+            origins,
+        }) => Ok(Imported {
             text,
             inputs: files.paths(),
             origins,
+            name,
+            account: files.account(),
         }),
         None => Err(files.into_errors()),
     }
 }
 
-fn described(files: &Files, path: &Path, options: &Options) -> Option<(String, Origins)> {
+/// The description of a robot before its file's account is added.
+struct Described {
+    name: String,
+    text: String,
+    origins: Origins,
+}
+
+fn described(files: &Files, path: &Path, options: &Options) -> Option<Described> {
     let (model, _) = model(files, path, options)?;
     let robot = Robot::new(files, &model, options)?;
     let designed = experiment::design(&robot.network, &robot.layout, &robot.plan);
-    let Written { text, joints } = robot.toml(&designed, path, options);
-    Some((text, Origins::new(files, robot.network.model, joints)))
-}
-
-/// The format of a robot's file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// That of MuJoCo.
-    Mjcf,
-    /// That of ROS.
-    Urdf,
-    /// That of OpenSYMORO.
-    Par,
-    /// That of Gazebo.
-    Sdf,
+    let name = options.name.clone().unwrap_or_else(|| model.name.clone());
+    let Written { text, joints } = robot.toml(files, &designed, path, options);
+    Some(Described {
+        name,
+        text,
+        origins: Origins::new(files, robot.network.model, joints),
+    })
 }
 
 /// The robot of a file with all choices of the user, and the file's format; `None` after an error.
@@ -96,8 +107,7 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
     }
     no_balls_in_trees(files, &model)?;
-    plain_balls(&mut model);
-    no_springs_in_loops(&mut model);
+    unsupported::leave_out(files, format, &mut model);
     Some((model, format))
 }
 
@@ -125,6 +135,7 @@ impl<'m> Robot<'m> {
     /// The description.
     pub(crate) fn toml(
         &self,
+        files: &Files,
         designed: &Result<Experiment, String>,
         path: &Path,
         options: &Options,
@@ -133,7 +144,15 @@ impl<'m> Robot<'m> {
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());
         let source = source.unwrap_or_default();
-        writing::toml(&self.network, &self.plan, designed, &source, options)
+        let account = files.account();
+        writing::toml(
+            &self.network,
+            &self.plan,
+            designed,
+            &account,
+            &source,
+            options,
+        )
     }
 }
 
@@ -146,11 +165,7 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
     {
         return par::read(files, file, options).map(|model| (model, Format::Par));
     }
-    let root = xml::parse(
-        files,
-        file,
-        &["visual", "collision", "asset", "geom", "sensor"],
-    )?;
+    let root = xml::parse(files, file)?;
     match root.name.as_str() {
         "mujoco" => mjcf::read(files, file, options).map(|model| (model, Format::Mjcf)),
         "robot" => urdf::read(files, file, options).map(|model| (model, Format::Urdf)),
@@ -306,49 +321,4 @@ fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
     let help = "write it as three revolute joints";
     files.report(&ball.place, message, help);
     None
-}
-
-/// Balls have no torques of their own in a description: what a file says of them is left out, and told.
-fn plain_balls(model: &mut Model) {
-    let balls = model
-        .joints
-        .iter_mut()
-        .filter(|joint| joint.kind == crate::model::Kind::Ball);
-    for ball in balls {
-        let own = [
-            ("damping", ball.damping),
-            ("friction", ball.friction),
-            ("armature", ball.armature),
-            (
-                "stiffness",
-                ball.spring.map_or(0.0, |(stiffness, _)| stiffness),
-            ),
-        ];
-        let given = own.iter().filter(|(_, value)| *value != 0.0);
-        let given: Vec<String> = given.map(|(key, value)| format!("{key} {value}")).collect();
-        if !given.is_empty() {
-            let list = given.join(", ");
-            model.notes.push(format!(
-                "LEFT OUT of the ball `{}`: {list}; balls have no torques here.",
-                ball.name
-            ));
-            (ball.damping, ball.friction, ball.armature, ball.spring) = (0.0, 0.0, 0.0, None);
-        }
-    }
-}
-
-/// Springs are those of robots without loops: what a file says of others is left out, and told.
-fn no_springs_in_loops(model: &mut Model) {
-    if model.closures.is_empty() {
-        return;
-    }
-    for joint in &mut model.joints {
-        if let Some((stiffness, rest)) = joint.spring.take() {
-            model.notes.push(format!(
-                "LEFT OUT of `{}`: its spring of stiffness {stiffness} that rests at {rest}; robots with loops have none \
-                 here.",
-                joint.name
-            ));
-        }
-    }
 }

@@ -4,6 +4,7 @@
 //! | stage | from | to |
 //! |---|---|---|
 //! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
+//! | `account` | elements and attributes | what is honoured, ignored, reported or rejected |
 //! | `bounds` | the model | its numbers, if a robot may have them |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
@@ -12,11 +13,16 @@
 //! | `origins` | errors of the description | errors of the file |
 //! | `export` | the file and parameters | the file with these parameters |
 
+mod account;
+#[cfg(test)]
+mod agreement;
 mod assembly;
 mod bounds;
+mod couplings;
 mod experiment;
 mod export;
 mod files;
+mod format;
 mod frames;
 mod geometry;
 mod import;
@@ -26,12 +32,16 @@ mod options;
 mod origins;
 mod par;
 mod plan;
+mod prune;
 mod sdf;
+mod unsupported;
 mod urdf;
 mod writing;
 mod xml;
 
+pub use account::{Account, Entry};
 pub use export::{Exported, export};
 pub use files::Errors;
-pub use import::{Format, Imported, import};
+pub use format::Format;
+pub use import::{Imported, import};
 pub use options::Options;

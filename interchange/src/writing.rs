@@ -4,6 +4,7 @@ mod believable;
 mod experiment;
 
 use crate::{
+    account::Account,
     assembly::network::Network,
     experiment::Experiment,
     frames::step::angles,
@@ -27,6 +28,7 @@ pub(crate) fn toml(
     network: &Network<'_>,
     plan: &Plan,
     designed: &Result<Experiment, String>,
+    account: &Account,
     source: &str,
     options: &Options,
 ) -> Written {
@@ -48,6 +50,7 @@ pub(crate) fn toml(
     for note in &plan.notes {
         comment(&mut text, note);
     }
+    unused(&mut text, account);
     let _ = writeln!(text, "\nname = \"{}\"", robot_name(name));
     let _ = writeln!(
         text,
@@ -67,6 +70,21 @@ pub(crate) fn toml(
     experiment::toml(&mut text, designed);
     values(&mut text, plan, &mut joints);
     Written { text, joints }
+}
+
+/// What of the file the description does not use although the model may differ without it.
+fn unused(text: &mut String, account: &Account) {
+    if account.reported.is_empty() {
+        return;
+    }
+    text.push_str("# Not used of the file:\n");
+    for entry in &account.reported {
+        let (subject, reason) = (entry.subject(), entry.counted_reason());
+        comment(
+            text,
+            &format!("- line {}: {subject}: {reason}.", entry.line),
+        );
+    }
 }
 
 /// The choices of the user on which names of parameters depend; none where there are none.

@@ -1,6 +1,7 @@
-//! XML as a tree of elements that know their place: without entities, of bounded depth and size, and without the
-//! parts that only a picture of the robot needs.
+//! XML as a tree of elements that know their place: without entities, of bounded depth and size.
 
+#[cfg(test)]
+use crate::account::trace;
 use crate::files::{Files, Place};
 
 /// Elements within each other, also those of included files.
@@ -27,9 +28,8 @@ pub(crate) struct Element {
     pub(crate) place: Place,
 }
 
-/// Reads a file's text; `None` after an error. Elements whose names `skip` knows are left out with all that is in
-/// them.
-pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element> {
+/// Reads a file's text; `None` after an error.
+pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
     let text = files.text(file);
     check_tags(files, file, &text)?;
     let most = files.elements_left();
@@ -78,7 +78,7 @@ pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element
         files.report(&place, message, "no element of a robot has so many");
         return None;
     }
-    let found = element(document.root_element(), file, skip, 0);
+    let found = element(document.root_element(), file, 0);
     if found.is_none() {
         too_deep(files, &Place { file, span: 0..1 });
     }
@@ -125,12 +125,7 @@ fn place_of(text: &str, file: usize, at: roxmltree::TextPos) -> Place {
 }
 
 /// An element with all that is in it; `None` where that is too deep.
-pub(crate) fn element(
-    node: roxmltree::Node<'_, '_>,
-    file: usize,
-    skip: &[&str],
-    depth: usize,
-) -> Option<Element> {
+pub(crate) fn element(node: roxmltree::Node<'_, '_>, file: usize, depth: usize) -> Option<Element> {
     if depth > DEPTH {
         return None;
     }
@@ -142,8 +137,7 @@ pub(crate) fn element(
         (a.name().to_owned(), a.value().to_owned(), place)
     });
     let children = node.children().filter(|child| child.is_element());
-    let children = children.filter(|child| !skip.contains(&child.tag_name().name()));
-    let children = children.map(|child| element(child, file, skip, depth + 1));
+    let children = children.map(|child| element(child, file, depth + 1));
     let start = node.range().start;
     let name = node.tag_name().name().to_owned();
     let place = Place {
@@ -200,6 +194,8 @@ impl Element {
 
     /// The value of an attribute and its place.
     pub(crate) fn attribute(&self, name: &str) -> Option<(&str, &Place)> {
+        #[cfg(test)]
+        trace::attribute(&self.name, name);
         let mut all = self.attributes.iter();
         all.find(|(own, ..)| own == name)
             .map(|(_, value, place)| (value.as_str(), place))
@@ -207,11 +203,15 @@ impl Element {
 
     /// The first element of a name in it.
     pub(crate) fn child(&self, name: &str) -> Option<&Self> {
+        #[cfg(test)]
+        trace::child(&self.name, name);
         self.children.iter().find(|child| child.name == name)
     }
 
     /// All elements of a name in it.
     pub(crate) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Self> + 'a {
+        #[cfg(test)]
+        trace::child(&self.name, name);
         self.children.iter().filter(move |child| child.name == name)
     }
 

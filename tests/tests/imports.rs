@@ -192,10 +192,15 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
         module: "",
         order: &[
             "options",
+            "format",
+            "account",
             "files",
             "xml",
+            "prune",
             "geometry",
             "model",
+            "couplings",
+            "unsupported",
             "assembly",
             "frames",
             "plan",
@@ -207,6 +212,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "writing",
             "import",
             "export",
+            "agreement",
         ],
     },
     LayerOrder {

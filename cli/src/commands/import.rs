@@ -2,11 +2,17 @@
 
 use crate::{
     failure::Failure,
-    output::{check, emit},
+    note::is_quiet,
+    output::{self, check, emit, print},
 };
-use overact_interchange::Options;
+use overact_description::diagnostic::visible;
+use overact_interchange::{Account, Entry, Imported, Options};
 use overact_robot::import;
-use std::path::PathBuf;
+use serde::Serialize;
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -79,15 +85,90 @@ fn position(text: &str) -> Result<(String, f64), String> {
 ///
 /// # Errors
 /// What is wrong with the file, what of it can't be said, or an output that can't be written.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let options = Options {
         name: arguments.name.clone(),
         ..arguments.choices.options()
     };
-    let output: Vec<&std::path::Path> = arguments.output.as_deref().into_iter().collect();
+    let written = output::file(arguments.output.as_ref());
+    let output: Vec<&Path> = written.into_iter().collect();
     check(&[&arguments.file], &output)?;
     let imported = import(&arguments.file, &options)?;
-    let inputs: Vec<&std::path::Path> = imported.inputs.iter().map(PathBuf::as_path).collect();
+    let inputs: Vec<&Path> = imported.inputs.iter().map(PathBuf::as_path).collect();
     check(&inputs, &output)?;
-    emit(&imported.text, arguments.output.as_deref())
+    if !as_json {
+        print_notes(&imported.account);
+        return emit(&imported.text, written);
+    }
+    let document = output::json(&Document::new(&imported))?;
+    if written.is_some() {
+        emit(&imported.text, written)?;
+    }
+    print(&document)
+}
+
+/// Prints on stderr what of the files is not used although the model may differ without it.
+fn print_notes(account: &Account) {
+    for entry in account.reported.iter().filter(|_| !is_quiet()) {
+        let (subject, reason) = (entry.subject(), entry.counted_reason());
+        let text = format!("{subject}: reported: {reason}");
+        let note = format!("{}:{}: {}", entry.file, entry.line, visible(&text));
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: {note}");
+    }
+}
+
+/// What an import gives as JSON.
+#[derive(Debug, Serialize)]
+struct Document<'d> {
+    robot: &'d str,
+    /// The TOML.
+    description: &'d str,
+    honoured: Vec<Item<'d>>,
+    ignored: Vec<Item<'d>>,
+    reported: Vec<Item<'d>>,
+    /// Closures that the file's numbers miss; none are accepted yet.
+    misfits: [(); 0],
+    /// Motions that move no other body; they are in the comments of the description.
+    spins: [(); 0],
+}
+
+/// Equal elements or attributes of a file.
+#[derive(Debug, Serialize)]
+struct Item<'d> {
+    file: &'d str,
+    line: usize,
+    element: &'d str,
+    attribute: Option<&'d str>,
+    reason: &'d str,
+    count: usize,
+}
+
+impl<'d> Document<'d> {
+    fn new(imported: &'d Imported) -> Self {
+        let items = |entries: &'d [Entry]| entries.iter().map(Item::new).collect();
+        let account = &imported.account;
+        Self {
+            robot: &imported.name,
+            description: &imported.text,
+            honoured: items(&account.honoured),
+            ignored: items(&account.ignored),
+            reported: items(&account.reported),
+            misfits: [],
+            spins: [],
+        }
+    }
+}
+
+impl<'d> Item<'d> {
+    fn new(entry: &'d Entry) -> Self {
+        Self {
+            file: &entry.file,
+            line: entry.line,
+            element: &entry.element,
+            attribute: entry.attribute.as_deref(),
+            reason: &entry.reason,
+            count: entry.count,
+        }
+    }
 }

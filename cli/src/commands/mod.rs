@@ -97,7 +97,7 @@ impl Command {
             Self::Explain(arguments) => explain::run(arguments, json),
             Self::Completions(arguments) => shell::completions(arguments),
             Self::Manual(arguments) => shell::manual(arguments),
-            Self::Import(arguments) => import::run(arguments),
+            Self::Import(arguments) => import::run(arguments, json),
             Self::Export(arguments) => export::run(arguments),
         }
     }

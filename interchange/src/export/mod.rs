@@ -12,7 +12,8 @@ mod urdf;
 use crate::{
     assembly::network::Network,
     files::{Errors, Files},
-    import::{self, Format, Robot},
+    format::Format,
+    import::{self, Robot},
     options::Options,
     plan::{Joint, Plan},
 };
@@ -69,7 +70,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
     let robot = Robot::new(files, &model, options)?;
     // Names of parameters do not depend on a virtual experiment.
     let text = robot
-        .toml(&Err("none is needed".to_owned()), path, options)
+        .toml(files, &Err("none is needed".to_owned()), path, options)
         .text;
     let values = values(files, parameters, &text)?;
     let mut own = Export {

@@ -33,7 +33,7 @@ pub(super) fn inertia(
     };
     let part = |name: &str| child(inertial, name).and_then(|id| document.get_node(id));
     let origin = part("origin");
-    let element = origin.and_then(|origin| xml::element(origin, file, &[], 0));
+    let element = origin.and_then(|origin| xml::element(origin, file, 0));
     let turn = urdf::origin(files, element.as_ref()).rotation;
     let centre = numbers(own.centre.coords.as_slice());
     match origin {

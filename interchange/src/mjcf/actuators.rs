@@ -1,6 +1,10 @@
 //! Actuators: which joints they drive, and through which gear.
 
-use super::{Reader, defaults::MAIN};
+use super::{
+    Reader,
+    bodies::first,
+    defaults::{ACTUATOR, MAIN},
+};
 use crate::{
     model::{Kind, Model},
     xml::Element,
@@ -10,7 +14,9 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &mut Model) {
     for section in root.all("actuator") {
         for element in &section.children {
             model.says_motors = true;
-            let whole = reader.defaults.apply(reader.files, element, MAIN);
+            let whole = reader
+                .defaults
+                .apply_as(ACTUATOR, reader.files, element, MAIN);
             actuator(reader, &whole, model);
         }
     }
@@ -23,17 +29,11 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         .attribute("joint")
         .or_else(|| element.attribute("jointinparent"))
     else {
-        let through = ["tendon", "site", "body", "slidersite", "cranksite"];
-        let through = through
-            .iter()
-            .find(|key| element.get(key).is_some())
-            .unwrap_or(&"nothing");
-        let message = format!("the actuator `{name}` acts on a {through}, which can't be said");
-        files.report(
-            &element.place,
-            message,
-            "actuators of joints can: take it out, or let it act on a joint",
-        );
+        // The table rejects what else an actuator may act on.
+        if files.is_clean() {
+            let message = format!("the actuator `{name}` acts on nothing");
+            files.report(&element.place, message, "write joint=\"…\"");
+        }
         return;
     };
     let Some(at) = model.joint_named(joint) else {
@@ -55,6 +55,9 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         .list(files, "gear")
         .and_then(|gear| gear.first().copied())
         .unwrap_or(1.0);
+    // Rotor and damper of the actuator, seen at the joint.
+    own.armature += gear * gear * element.number(files, "armature", 0.0);
+    own.damping += gear * gear * first(files, element, "damping");
     if gear != 1.0 {
         own.drive = format!(
             "Actuator `{name}` with gear {gear}: the joint's torque is {gear} times its force, `torque_gain` of [data]"

@@ -1,19 +1,39 @@
 //! Bodies, their joints and inertias.
 
-use super::{Reader, Sites, defaults::MAIN};
+use super::{Reader, Sites, adjust::SpringDamper, defaults::MAIN, inertia};
 use crate::{
     files::Files,
     geometry::exact,
-    model::{Body, Inertia, Joint, Kind, Model, Pose},
+    model::{Body, Joint, Kind, Model, Pose},
     xml::Element,
 };
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 
-pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &mut Model, sites: &mut Sites) {
+/// Reads all bodies; returns the springs that follow from inertias.
+pub(super) fn read(
+    reader: &Reader<'_>,
+    root: &Element,
+    model: &mut Model,
+    sites: &mut Sites,
+) -> Vec<SpringDamper> {
+    let mut springs = Vec::new();
     for world in root.all("worldbody") {
         let class = world.get("childclass").unwrap_or(MAIN).to_owned();
-        inside(reader, world, 0, &Pose::identity(), &class, model, sites);
+        let mut tree = Tree {
+            model: &mut *model,
+            sites: &mut *sites,
+            springs: &mut springs,
+        };
+        inside(reader, world, 0, &Pose::identity(), &class, &mut tree);
     }
+    springs
+}
+
+/// What is read of the bodies.
+struct Tree<'t> {
+    model: &'t mut Model,
+    sites: &'t mut Sites,
+    springs: &'t mut Vec<SpringDamper>,
 }
 
 /// The bodies, sites and frames in a body; `offset` is that of frames around them.
@@ -23,31 +43,22 @@ fn inside(
     parent: usize,
     offset: &Pose,
     class: &str,
-    model: &mut Model,
-    sites: &mut Sites,
+    tree: &mut Tree<'_>,
 ) {
     for child in &element.children {
-        let class = child.get("childclass").unwrap_or(class).to_owned();
+        let inner_class = || child.get("childclass").unwrap_or(class);
         match child.name.as_str() {
-            "body" => body(reader, child, parent, offset, &class, model, sites),
+            "body" => body(reader, child, parent, offset, inner_class(), tree),
             "frame" => {
                 let offset = offset * reader.compiler.frame(reader.files, child);
-                inside(reader, child, parent, &offset, &class, model, sites);
+                inside(reader, child, parent, &offset, inner_class(), tree);
             }
             "site" => {
-                let whole = reader.defaults.apply(reader.files, child, &class);
+                let whole = reader.defaults.apply(reader.files, child, class);
                 let at = offset * reader.compiler.frame(reader.files, &whole);
                 if let Some(name) = child.get("name") {
-                    sites.insert(name.to_owned(), (parent, at));
+                    tree.sites.insert(name.to_owned(), (parent, at));
                 }
-            }
-            "replicate" | "attach" => {
-                let message = format!("<{}> can't be said", child.name);
-                reader.files.report(
-                    &child.place,
-                    message,
-                    "write the bodies out: save the model as MJCF from MuJoCo",
-                );
             }
             _ => {}
         }
@@ -60,9 +71,9 @@ fn body(
     parent: usize,
     offset: &Pose,
     class: &str,
-    model: &mut Model,
-    sites: &mut Sites,
+    tree: &mut Tree<'_>,
 ) {
+    let model = &mut *tree.model;
     let files = reader.files;
     let name = element
         .get("name")
@@ -71,20 +82,24 @@ fn body(
         let message = format!("two bodies are called `{name}`");
         files.report(&element.place, message, "give each body a name of its own");
     }
-    let joints: Vec<Element> = element
-        .children
-        .iter()
-        .filter(|child| child.name == "joint" || child.name == "freejoint")
-        .map(|joint| reader.defaults.apply(files, joint, class))
-        .collect();
+    let mut joints = Vec::new();
+    gather_joints(reader, element, &Pose::identity(), class, &mut joints);
     let mut placement = offset * reader.compiler.frame(files, element);
     let mut parent = parent;
     let count = joints.len();
-    for (at, own) in joints.iter().enumerate() {
-        let Some(joint) = joint(reader, own, model) else {
+    for (at, (own, offset)) in joints.iter().enumerate() {
+        let Some(mut joint) = joint(reader, own, model) else {
             continue;
         };
+        joint.at = offset * joint.at;
+        joint.axis = offset.rotation * joint.axis;
         model.joints.push(joint);
+        let at_joint = model.joints.len() - 1;
+        if let Some(spring) = spring_damper(reader, own, model, at_joint) {
+            // It takes the place of the joint's own damping.
+            model.joints[at_joint].damping = 0.0;
+            tree.springs.push(spring);
+        }
         // All joints but the last carry a massless body in the same place.
         let is_last = at + 1 == count;
         model.bodies.push(Body {
@@ -115,8 +130,35 @@ fn body(
         });
     }
     let own = model.bodies.len() - 1;
-    model.bodies[own].inertia = inertia(reader, element, model);
-    inside(reader, element, own, &Pose::identity(), class, model, sites);
+    let (inertia, is_unknown) = inertia::read(reader, element, class);
+    model.bodies[own].inertia = inertia;
+    model.bodies[own].has_unknown_inertia = is_unknown;
+    inside(reader, element, own, &Pose::identity(), class, tree);
+}
+
+/// The joints of a body with the frames in the body that they stand in, in the order of the file.
+fn gather_joints(
+    reader: &Reader<'_>,
+    element: &Element,
+    offset: &Pose,
+    class: &str,
+    joints: &mut Vec<(Element, Pose)>,
+) {
+    for child in &element.children {
+        match child.name.as_str() {
+            "freejoint" => joints.push((child.clone(), *offset)),
+            "joint" => {
+                let whole = reader.defaults.apply(reader.files, child, class);
+                joints.push((whole, *offset));
+            }
+            "frame" => {
+                let class = child.get("childclass").unwrap_or(class);
+                let offset = offset * reader.compiler.frame(reader.files, child);
+                gather_joints(reader, child, &offset, class, joints);
+            }
+            _ => {}
+        }
+    }
 }
 
 fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Joint> {
@@ -124,8 +166,13 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     let name = element
         .get("name")
         .map_or_else(|| format!("joint{}", model.joints.len() + 1), str::to_owned);
-    let kind = match (element.name.as_str(), element.get("type")) {
-        ("freejoint", _) | (_, Some("free")) => {
+    let kind = if element.name == "freejoint" {
+        Some("free")
+    } else {
+        element.get("type")
+    };
+    let kind = match kind {
+        Some("free") => {
             if reader.options.fix_base {
                 model.notes.push(format!(
                     "`{name}` lets the base float; it is fixed here where it stands."
@@ -137,10 +184,10 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
             }
             return None;
         }
-        (_, None | Some("hinge")) => Kind::Revolute,
-        (_, Some("slide")) => Kind::Prismatic,
-        (_, Some("ball")) => Kind::Ball,
-        (_, Some(other)) => {
+        None | Some("hinge") => Kind::Revolute,
+        Some("slide") => Kind::Prismatic,
+        Some("ball") => Kind::Ball,
+        Some(other) => {
             let message = format!("the joint `{name}` is `{other}`, which can't be said");
             files.report(&element.place, message, "hinge, slide and ball joints can");
             return None;
@@ -184,6 +231,43 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     Some(joint)
 }
 
+/// The spring and damper that a joint gives by a time constant and a damping ratio.
+fn spring_damper(
+    reader: &Reader<'_>,
+    element: &Element,
+    model: &Model,
+    joint: usize,
+) -> Option<SpringDamper> {
+    let files = reader.files;
+    let [time_constant, damping_ratio] = element.numbers(files, "springdamper")?;
+    if [time_constant, damping_ratio] == [0.0; 2] {
+        return None;
+    }
+    let kind = model.joints[joint].kind;
+    if kind == Kind::Ball {
+        let reason = "LEFT OUT: balls have no torques of their own in a description";
+        files.demote(&element.place, "joint", Some("springdamper"), reason);
+        return None;
+    }
+    if time_constant <= 0.0 || damping_ratio <= 0.0 {
+        let message = "`springdamper` has to be two positive numbers";
+        let help = "write a time constant in s and a damping ratio, for instance \"0.1 1\"";
+        files.report(&element.place, message, help);
+        return None;
+    }
+    let rest = element.number(files, "springref", 0.0);
+    Some(SpringDamper {
+        joint,
+        time_constant,
+        damping_ratio,
+        rest: if kind == Kind::Revolute {
+            reader.compiler.angle(rest)
+        } else {
+            rest
+        },
+    })
+}
+
 /// The limits of a joint where it has some.
 fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]> {
     let limits: [f64; 2] = element.numbers(reader.files, "range")?;
@@ -201,7 +285,7 @@ fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]>
 }
 
 /// The first number of an attribute: of polynomials the linear one.
-fn first(files: &Files, element: &Element, key: &str) -> f64 {
+pub(super) fn first(files: &Files, element: &Element, key: &str) -> f64 {
     let all = element.list(files, key).unwrap_or_default();
     if let Some((_, place)) = element
         .attribute(key)
@@ -211,47 +295,4 @@ fn first(files: &Files, element: &Element, key: &str) -> f64 {
         files.report(place, message, "give one number");
     }
     all.first().copied().unwrap_or(0.0)
-}
-
-fn inertia(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Inertia> {
-    let files = reader.files;
-    let name = element.get("name").unwrap_or("a body");
-    let Some(inertial) = element
-        .child("inertial")
-        .filter(|_| !reader.compiler.inertia_from_geometry)
-    else {
-        model.notes.push(format!(
-            "`{name}` has no <inertial>: its mass and inertia, which MuJoCo takes from its geometry, are zero here."
-        ));
-        return None;
-    };
-    let mass = inertial.number(files, "mass", 0.0);
-    let frame = reader.compiler.frame(files, inertial);
-    if let Some([xx, yy, zz, xy, xz, yz]) = inertial.numbers(files, "fullinertia") {
-        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        // MuJoCo turns its frame to the principal axes; the tensor is that of the body's.
-        let frame = Pose::from_parts(frame.translation, nalgebra::Rotation3::identity());
-        return Some(
-            Inertia {
-                mass,
-                centre: Point3::origin(),
-                tensor,
-            }
-            .seen(&frame),
-        );
-    }
-    let diagonal = inertial
-        .numbers::<3>(files, "diaginertia")
-        .unwrap_or_default();
-    let tensor = Matrix3::from_diagonal(&Vector3::from(diagonal));
-    let rotation = exact::cleaned(&frame.rotation);
-    let frame = Pose::from_parts(frame.translation, rotation);
-    Some(
-        Inertia {
-            mass,
-            centre: Point3::origin(),
-            tensor,
-        }
-        .seen(&frame),
-    )
 }

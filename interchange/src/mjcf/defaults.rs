@@ -23,6 +23,12 @@ const MOST_ATTRIBUTES: usize = 1_000;
 /// The class of everything that names none.
 pub(super) const MAIN: &str = "main";
 
+/// The tag of defaults of actuators.
+pub(super) const ACTUATOR: &str = "general";
+
+/// The tag of defaults of equality constraints.
+pub(super) const EQUALITY: &str = "equality";
+
 impl Defaults {
     /// The classes of a file; `None` after an error.
     pub(super) fn new(files: &Files, root: &Element) -> Option<Self> {
@@ -54,7 +60,7 @@ impl Defaults {
             .filter(|child| child.name != "default")
         {
             for (key, value, place) in &child.attributes {
-                let key = (child.name.clone(), key.clone());
+                let key = (family(&child.name).to_owned(), key.clone());
                 class.insert(key, (value.clone(), place.clone()));
             }
         }
@@ -72,6 +78,17 @@ impl Defaults {
 
     /// An element with what its class gives it.
     pub(super) fn apply(&self, files: &Files, element: &Element, around: &str) -> Element {
+        self.apply_as(&element.name, files, element, around)
+    }
+
+    /// An element with what its class gives elements of a tag: `equality` or `general` of several kinds.
+    pub(super) fn apply_as(
+        &self,
+        tag: &str,
+        files: &Files,
+        element: &Element,
+        around: &str,
+    ) -> Element {
         let mut whole = element.clone();
         let named = element.attribute("class");
         let name = named.map_or(around, |(name, _)| name);
@@ -86,15 +103,25 @@ impl Defaults {
             return whole;
         };
         let rotations = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
-        let is_turned = rotations.iter().any(|key| element.get(key).is_some());
-        for ((tag, key), (value, place)) in class {
+        let mut own = element.attributes.iter();
+        let is_turned = own.any(|(key, ..)| rotations.contains(&key.as_str()));
+        for ((own, key), (value, place)) in class {
             let is_other_rotation = is_turned && rotations.contains(&key.as_str());
-            if *tag == element.name && element.get(key).is_none() && !is_other_rotation {
+            if own == tag && element.get(key).is_none() && !is_other_rotation {
                 whole
                     .attributes
                     .push((key.clone(), value.clone(), place.clone()));
             }
         }
         whole
+    }
+}
+
+/// The tag under which defaults are kept: those of all actuators are the same in MuJoCo.
+fn family(tag: &str) -> &str {
+    match tag {
+        "general" | "motor" | "position" | "velocity" | "intvelocity" | "orientation" | "pid"
+        | "damper" | "cylinder" | "muscle" | "adhesion" | "dcmotor" | "plugin" => ACTUATOR,
+        other => other,
     }
 }

@@ -1,10 +1,15 @@
 //! Equality constraints: points and frames that meet, and joints that follow others.
 
-use super::{Reader, Sites, defaults::MAIN};
+use super::{
+    Reader, Sites,
+    defaults::{EQUALITY, MAIN},
+};
 use crate::{
+    account::Use,
     assembly::motion::Motion,
+    couplings::{Coupling, Couplings},
     geometry::exact,
-    model::{Closure, ClosureKind, Follow, Model, Pose},
+    model::{Closure, ClosureKind, Model, Pose},
     xml::Element,
 };
 use nalgebra::{Point3, Vector3};
@@ -12,14 +17,18 @@ use nalgebra::{Point3, Vector3};
 pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
     // Where one frame is given, the other is where it is in the file's own configuration.
     let poses = Motion::new(model).start().poses;
+    let mut couplings = Couplings::default();
     for section in root.all("equality") {
         for element in &section.children {
-            let whole = reader.defaults.apply(reader.files, element, MAIN);
+            let whole = reader
+                .defaults
+                .apply_as(EQUALITY, reader.files, element, MAIN);
             if whole.get("active") == Some("false") {
-                model.notes.push(format!(
-                    "The inactive equality `{}` is left out.",
-                    named(&whole)
-                ));
+                let reason = "inactive";
+                let tag = &whole.name;
+                reader
+                    .files
+                    .record(Use::Ignored, &whole.place, tag, None, reason);
                 continue;
             }
             match whole.name.as_str() {
@@ -29,7 +38,7 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
                         model.closures.push(Closure { name, kind, place });
                     }
                 }
-                "joint" => follow(reader, &whole, model),
+                "joint" => follow(reader, &whole, model, &mut couplings),
                 other => {
                     let message = format!("the equality <{other}> can't be said");
                     reader
@@ -39,6 +48,7 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
             }
         }
     }
+    couplings.resolve(reader.files, model);
 }
 
 /// What a constraint is called, by itself or by what it joins.
@@ -135,7 +145,7 @@ fn frames(
 }
 
 /// A joint that follows another by a straight line.
-fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
+fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut Couplings) {
     let files = reader.files;
     let joint = |key: &str| {
         let name = element.get(key)?;
@@ -148,9 +158,7 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         }
         found
     };
-    let coefficients = element
-        .list(files, "polycoef")
-        .unwrap_or_else(|| vec![0.0, 1.0]);
+    let coefficients = element.list(files, "polycoef").unwrap_or_default();
     let (Some(own), Some(leader)) = (joint("joint1"), joint("joint2")) else {
         if element.get("joint2").is_none() {
             let help = "make the body fixed: take the joint out";
@@ -162,15 +170,6 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         }
         return;
     };
-    if own == leader || model.joints[leader].follow.is_some() {
-        let help = "let each joint follow one that follows none";
-        files.report(
-            &element.place,
-            "joints follow each other in a circle or a row",
-            help,
-        );
-        return;
-    }
     if coefficients.iter().skip(2).any(|c| *c != 0.0) {
         let help = "a joint may follow another by a straight line: polycoef=\"c0 c1 0 0 0\"";
         files.report(
@@ -180,12 +179,16 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         );
         return;
     }
-    let [c0, factor] = [0, 1].map(|at| coefficients.get(at).copied().unwrap_or(0.0));
+    // MuJoCo's own coefficients are 0 1 0 0 0, also behind those that are given.
+    let coefficient = |at: usize, default| coefficients.get(at).copied().unwrap_or(default);
+    let (c0, factor) = (coefficient(0, 0.0), coefficient(1, 1.0));
     // Both count from their references.
     let offset = c0 + model.joints[own].reference - factor * model.joints[leader].reference;
-    model.joints[own].follow = Some(Follow {
-        joint: leader,
+    couplings.add(Coupling {
+        follower: own,
+        leader,
         factor,
         offset,
+        place: element.place.clone(),
     });
 }

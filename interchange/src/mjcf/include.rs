@@ -1,7 +1,9 @@
 //! A file with those that it includes in their places.
 
 use crate::{
+    account::MJCF,
     files::Files,
+    prune::keep_honoured,
     xml::{self, Element},
 };
 use std::path::PathBuf;
@@ -10,31 +12,13 @@ use std::path::PathBuf;
 const DEPTH: usize = 30;
 /// Files altogether.
 const FILES: usize = 500;
-/// Parts of a file that only a picture or a simulation of contacts needs.
-const SKIPPED: [&str; 15] = [
-    "asset",
-    "visual",
-    "contact",
-    "sensor",
-    "keyframe",
-    "custom",
-    "statistic",
-    "size",
-    "extension",
-    "geom",
-    "camera",
-    "light",
-    "plugin",
-    "flexcomp",
-    "composite",
-];
-
 /// The file as one element; `None` after an error.
 pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
-    let mut root = xml::parse(files, file, &SKIPPED)?;
+    let mut root = xml::parse(files, file)?;
     let folder = files.folder(file);
     let mut open = vec![files.path(file)];
     expand(files, &mut root, &folder, &mut open, 0)?;
+    keep_honoured(files, &MJCF, &mut root);
     files.is_clean().then_some(root)
 }
 
@@ -74,7 +58,7 @@ fn expand(
         let Some(file) = files.read(&path, Some(place)) else {
             continue;
         };
-        let Some(mut included) = xml::parse(files, file, &SKIPPED) else {
+        let Some(mut included) = xml::parse(files, file) else {
             continue;
         };
         open.push(path);

@@ -1,10 +1,14 @@
 //! MJCF: bodies within each other, defaults, equality constraints and actuators.
 
 mod actuators;
+mod adjust;
 mod bodies;
 mod defaults;
 mod equality;
 mod include;
+mod inertia;
+#[cfg(test)]
+mod tests;
 
 use crate::{
     bounds,
@@ -14,6 +18,7 @@ use crate::{
     options::Options,
     xml::Element,
 };
+use adjust::Adjustments;
 use defaults::Defaults;
 use nalgebra::{Rotation3, Vector3};
 use std::collections::BTreeMap;
@@ -38,19 +43,15 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         }
     }
     let mut sites = BTreeMap::new();
-    bodies::read(&reader, &root, &mut model, &mut sites);
+    let springs = bodies::read(&reader, &root, &mut model, &mut sites);
     if !files.is_clean() {
         return None;
     }
     equality::read(&reader, &root, &sites, &mut model);
     actuators::read(&reader, &root, &mut model);
-    for tag in ["tendon", "deformable"] {
-        if let Some(element) = root.all(tag).find(|element| !element.children.is_empty()) {
-            let message = format!("<{tag}> can't be said");
-            let help = "take it out where it does not move the robot: springs and couplings between joints are said in the TOML";
-            files.report(&element.place, message, help);
-        }
-    }
+    // Springs by time constants need the inertias and the rotors of all joints.
+    adjust::inertias(files, &root, &reader.compiler, &mut model);
+    adjust::springs(files, &mut model, &springs);
     files.is_clean().then_some(model)
 }
 
@@ -70,7 +71,11 @@ struct Compiler {
     is_degrees: bool,
     /// Axes of Euler angles, and whether each turn is about the axes that the ones before have turned.
     sequence: [(usize, bool); 3],
-    inertia_from_geometry: bool,
+    /// Whether inertias are those of the geoms; where it is open, those of bodies without `<inertial>`.
+    inertia_from_geometry: Option<bool>,
+    /// The first and the last group of geoms that have inertia.
+    inertia_groups: [f64; 2],
+    adjustments: Adjustments,
     /// Whether a joint with a range is limited to it unasked.
     limits_ranges: bool,
 }
@@ -80,7 +85,9 @@ impl Compiler {
         let mut own = Self {
             is_degrees: true,
             sequence: [(0, true), (1, true), (2, true)],
-            inertia_from_geometry: false,
+            inertia_from_geometry: None,
+            inertia_groups: [0.0, 5.0],
+            adjustments: Adjustments::default(),
             limits_ranges: true,
         };
         for compiler in root.all("compiler") {
@@ -114,7 +121,16 @@ impl Compiler {
                 files.report(place, message, "save the model with local coordinates");
             }
             own.limits_ranges &= compiler.get("autolimits") != Some("false");
-            own.inertia_from_geometry |= compiler.get("inertiafromgeom") == Some("true");
+            match compiler.get("inertiafromgeom") {
+                Some("true") => own.inertia_from_geometry = Some(true),
+                Some("false") => own.inertia_from_geometry = Some(false),
+                Some("auto") => own.inertia_from_geometry = None,
+                _ => {}
+            }
+            if let Some(groups) = compiler.numbers(files, "inertiagrouprange") {
+                own.inertia_groups = groups;
+            }
+            own.adjustments.read(files, compiler);
         }
         own
     }

@@ -5,11 +5,13 @@ mod expression;
 mod text;
 
 use crate::{
+    account::PAR,
     files::{Files, Place},
     frames::step::Step,
     geometry::exact,
     model::{Body, Closure, ClosureKind, Follow, Inertia, Joint, Kind, Model, Pose},
     options::Options,
+    prune::record_key,
 };
 use expression::{Fault, symbols, value};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -23,6 +25,10 @@ const FRAMES: usize = 1000;
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let text = files.text(file);
     let entries = entries(files, file, &text)?;
+    for (key, (place, values)) in &entries {
+        let values: Vec<&str> = values.iter().map(|(text, _)| text.as_str()).collect();
+        record_key(files, &PAR, "par", key, &values.join(" "), place);
+    }
     let reader = Reader {
         files,
         entries,
@@ -305,6 +311,9 @@ impl Reader<'_> {
             [Some(x), Some(y), Some(z)] => model.gravity = [x, y, z],
             _ => {
                 let list: Vec<&str> = values.iter().map(|(text, _)| text.as_str()).collect();
+                let reason = "gravity has no value: 9.81 m/s² against z in the model";
+                self.files
+                    .demote(&self.place("G"), "par", Some("G"), reason);
                 model.notes.push(format!(
                     "Gravity is {{{}}} in the file, and 9.81 m/s² against z here.",
                     list.join(", ")

@@ -8,23 +8,27 @@ use super::{
     value::number,
 };
 use crate::{
-    files::Place,
-    model::{Follow, Kind, Model},
+    couplings::{Coupling, Couplings},
+    model::{Kind, Model},
 };
 
 pub(super) fn read(gathered: &Gathered<'_>, edges: &[Edge], axes: &Axes, model: &mut Model) {
+    let mut all = Vec::new();
     for edge in edges {
         for axis in &edge.axes {
             if axis.lead.is_none() {
-                mimic(gathered, edge.item, axis.element, axes, model);
+                all.extend(mimic(gathered, edge.item, axis.element, axes, model));
             }
         }
     }
     for item in &gathered.joints {
         if item.owner == super::gather::Owner::Robot && joints::is_coupling(item) {
-            gearbox(gathered, item, edges, axes, model);
+            all.extend(gearbox(gathered, item, edges, axes));
         }
     }
+    let mut couplings = Couplings::default();
+    all.into_iter().for_each(|coupling| couplings.add(coupling));
+    couplings.resolve(gathered.files, model);
 }
 
 /// `<mimic>` of an axis: multiplier (leader - reference) + offset.
@@ -33,8 +37,8 @@ fn mimic(
     item: usize,
     tag: &'static str,
     axes: &Axes,
-    model: &mut Model,
-) -> Option<()> {
+    model: &Model,
+) -> Option<Coupling> {
     let files = gathered.files;
     let own = &gathered.joints[item];
     let mimic = own.element.child(tag)?.child("mimic")?;
@@ -63,52 +67,13 @@ fn mimic(
     let factor = number(files, mimic, "multiplier", 1.0);
     let reference = number(files, mimic, "reference", 0.0);
     let offset = number(files, mimic, "offset", 0.0) - factor * reference;
-    let follow = Follow {
-        joint: leader,
+    Some(Coupling {
+        follower,
+        leader,
         factor,
         offset,
-    };
-    set(gathered, &mimic.place, follower, follow, model)
-}
-
-/// Lets a joint follow another that follows none.
-fn set(
-    gathered: &Gathered<'_>,
-    place: &Place,
-    follower: usize,
-    follow: Follow,
-    model: &mut Model,
-) -> Option<()> {
-    let leads = |joint: usize| {
-        let mut all = model.joints.iter().filter_map(|own| own.follow);
-        all.any(|other| other.joint == joint)
-    };
-    let is_in_row = model.joints[follow.joint].follow.is_some()
-        || model.joints[follower].follow.is_some()
-        || follow.joint == follower
-        || leads(follower) && !is_screw(model, follower);
-    if is_in_row {
-        let message = "joints follow each other in a circle or a row";
-        let help = "let each joint follow one that follows none";
-        gathered.files.report(place, message, help);
-        return None;
-    }
-    // What follows the follower, as the slide of a screw its turn, follows the leader.
-    for joint in &mut model.joints {
-        if let Some(own) = joint.follow.as_mut().filter(|own| own.joint == follower) {
-            own.joint = follow.joint;
-            own.offset += own.factor * follow.offset;
-            own.factor *= follow.factor;
-        }
-    }
-    model.joints[follower].follow = Some(follow);
-    Some(())
-}
-
-/// Whether a joint is the turn of a screw, which its slide alone follows: the joint before it.
-fn is_screw(model: &Model, turn: usize) -> bool {
-    let mut others = model.joints.iter().enumerate();
-    others.all(|(at, own)| own.follow.is_none_or(|own| own.joint != turn) || at + 1 == turn)
+        place: mimic.place.clone(),
+    })
 }
 
 /// The second angle of a gearbox is minus its ratio times the first: that of the child and of the parent against the
@@ -118,8 +83,7 @@ fn gearbox(
     item: &JointItem,
     edges: &[Edge],
     axes: &Axes,
-    model: &mut Model,
-) -> Option<()> {
+) -> Option<Coupling> {
     let files = gathered.files;
     let reference = joints::reference_body(gathered, item)?;
     let base = tree::end(gathered, &reference)?;
@@ -141,12 +105,13 @@ fn gearbox(
     let ((first, first_sign), (second, second_sign)) = (first?, second?);
     let ratio = number(files, &item.element, "gearbox_ratio", 1.0);
     let joint = |edge: usize| axes.get(&(edges[edge].item, "axis")).copied();
-    let follow = Follow {
-        joint: joint(first)?,
+    Some(Coupling {
+        follower: joint(second)?,
+        leader: joint(first)?,
         factor: -ratio * first_sign * second_sign,
         offset: 0.0,
-    };
-    set(gathered, &item.element.place, joint(second)?, follow, model)
+        place: item.element.place.clone(),
+    })
 }
 
 /// The revolute joint between two links along an axis of a gearbox, and whether it counts as the gearbox does, from

@@ -6,6 +6,7 @@ use super::{
     value::{flag, pose, text, told_in},
 };
 use crate::{
+    account::Use,
     files::{Files, Place},
     xml::Element,
 };
@@ -55,7 +56,6 @@ pub(super) struct Gathered<'f> {
     pub(super) frames: Frames,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<JointItem>,
-    pub(super) plugins: Vec<String>,
     models: usize,
     /// Models that are open.
     depth: usize,
@@ -80,7 +80,6 @@ impl<'f> Gathered<'f> {
             frames: Frames::new(place, version),
             links: Vec::new(),
             joints: Vec::new(),
-            plugins: Vec::new(),
             models: 0,
             depth: 0,
             taken: BTreeSet::new(),
@@ -188,7 +187,11 @@ impl<'f> Gathered<'f> {
                 "frame" => self.named_frame(child, scope)?,
                 "plugin" if scope > 0 && owner == Owner::Robot => {
                     let name = child.get("filename").or_else(|| child.get("name"));
-                    self.plugins.push(name.unwrap_or("plugin").to_owned());
+                    let name = name.unwrap_or("plugin");
+                    let reason = format!("`{name}` is not read, nor which joints it drives");
+                    let place = &child.place;
+                    self.files
+                        .record(Use::Reported, place, "plugin", None, &reason);
                 }
                 "model" if scope > 0 => {
                     let source = Source {

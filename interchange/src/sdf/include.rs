@@ -1,9 +1,11 @@
 //! `<include>`: the model of another file, which has to lie beside or beneath the one that includes it.
 
-use super::{SKIPPED, value::text, version};
+use super::{value::text, version};
 use crate::{
+    account::SDF,
     bounds,
     files::{Files, Place},
+    prune::keep_honoured,
     xml::{self, Element},
 };
 use std::path::{Path, PathBuf};
@@ -36,12 +38,6 @@ pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Includ
         files.report(&element.place, message, "write <uri>FILE</uri>");
         return Included::Error;
     };
-    if let Some(params) = element.child("params") {
-        let message = "an <include> that changes what it includes can't be said";
-        let help = "write the model out: `gz sdf -p FILE` does";
-        files.report(&params.place, message, help);
-        return Included::Error;
-    }
     let Some(path) = beneath(uri, open) else {
         return Included::Elsewhere(uri.to_owned(), place.clone());
     };
@@ -104,7 +100,8 @@ fn included(
         return None;
     }
     let file = files.read(path, Some(place))?;
-    let root = xml::parse(files, file, &SKIPPED)?;
+    let mut root = xml::parse(files, file)?;
+    keep_honoured(files, &SDF, &mut root);
     bounds::check_elements(files, &root)?;
     let version = version(files, &root)?;
     let mut models = root.all("model");

@@ -13,12 +13,9 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
     let Some(inertial) = link.element.child("inertial") else {
         return (Some(usual()), false);
     };
-    if let Some(added) = inertial.child("fluid_added_mass") {
-        let message = "mass that a fluid adds can't be said";
-        let help = "take <fluid_added_mass> out where the robot moves in air";
-        files.report(&added.place, message, help);
-    }
     if matches!(inertial.get("auto"), Some("true" | "1")) {
+        let reason = "inertias from collision shapes and densities are not computed: the link's has no value";
+        files.demote(&inertial.place, "inertial", Some("auto"), reason);
         return (None, true);
     }
     let own = inertial.child("pose");
@@ -71,15 +68,6 @@ pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model)
     if let Some(list) = listed(&|link| link.element.child("inertial").is_none()) {
         model.notes.push(format!(
             "Without <inertial>: {list}. SDFormat gives each of them 1 kg and 1 kg m^2 about its origin, as here."
-        ));
-    }
-    let is_auto = |link: &Link| {
-        let inertial = link.element.child("inertial");
-        inertial.is_some_and(|own| matches!(own.get("auto"), Some("true" | "1")))
-    };
-    if let Some(list) = listed(&is_auto) {
-        model.notes.push(format!(
-            "The inertia of {list} follows from collision shapes and densities, which are not read: it has no value here."
         ));
     }
 }

@@ -16,39 +16,25 @@ mod tree;
 mod value;
 
 use crate::{
+    account::{SDF, Use},
     bounds,
     files::Files,
     model::Model,
     options::Options,
+    prune::keep_honoured,
     xml::{self, Element},
 };
 use gather::{Gathered, Owner};
 use include::{Included, Source};
 use value::{flag, several};
 
-/// Parts that only a picture, a sensor or a simulation of contacts needs.
-pub(crate) const SKIPPED: [&str; 13] = [
-    "visual",
-    "collision",
-    "sensor",
-    "material",
-    "light",
-    "gui",
-    "scene",
-    "physics",
-    "actor",
-    "road",
-    "state",
-    "population",
-    "gripper",
-];
-
 /// Acceleration of gravity of a world that says nothing.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 
 /// Reads a robot; what is wrong is noted in the files.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
-    let root = xml::parse(files, file, &SKIPPED)?;
+    let mut root = xml::parse(files, file)?;
+    keep_honoured(files, &SDF, &mut root);
     bounds::check_elements(files, &root)?;
     let version = version(files, &root)?;
     let mut worlds = root.all("world");
@@ -71,7 +57,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         };
     }
     let path = files.path(file);
-    let models = models(files, around, version, &path, &mut model)?;
+    let models = models(files, around, version, &path)?;
     let robot = chosen(files, around, &models, options)?;
     let name = models[robot].element.get("name").unwrap_or("robot");
     model.name = name.to_owned();
@@ -83,6 +69,16 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
             (false, true) => Owner::Ground,
             (false, false) => Owner::Stranger,
         };
+        if owner == Owner::Stranger {
+            let place = &found.element.place;
+            files.record(
+                Use::Ignored,
+                place,
+                "model",
+                None,
+                "another model of the world",
+            );
+        }
         gathered.model(&found.element, found.source, 0, owner)?;
     }
     gathered.parts(around, 0, Owner::Robot)?;
@@ -92,7 +88,6 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     }
     let (edges, axes) = tree::build(&gathered, options, &mut model)?;
     couplings::read(&gathered, &edges, &axes, &mut model);
-    plugins(&mut gathered, &mut model);
     files.is_clean().then_some(model)
 }
 
@@ -133,7 +128,6 @@ fn models(
     around: &Element,
     version: (u32, u32),
     path: &std::path::Path,
-    model: &mut Model,
 ) -> Option<Vec<Found>> {
     let mut all = Vec::new();
     let mut elsewhere = Vec::new();
@@ -169,12 +163,9 @@ fn models(
         include::refuse(files, uri, place);
         return None;
     }
-    if !elsewhere.is_empty() {
-        let list: Vec<String> = elsewhere
-            .iter()
-            .map(|(uri, _)| format!("`{uri}`"))
-            .collect();
-        model.notes.push(format!("Not read: {}.", list.join(", ")));
+    for (uri, place) in &elsewhere {
+        let reason = format!("`{uri}` is not read");
+        files.record(Use::Reported, place, "include", Some("uri"), &reason);
     }
     Some(all)
 }
@@ -212,22 +203,5 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
             files.report(&around.place, message, help);
             None
         }
-    }
-}
-
-/// Plugins drive joints, or do something else: nobody here knows.
-fn plugins(gathered: &mut Gathered<'_>, model: &mut Model) {
-    gathered.plugins.sort();
-    gathered.plugins.dedup();
-    let list: Vec<String> = gathered
-        .plugins
-        .iter()
-        .map(|name| format!("`{name}`"))
-        .collect();
-    if !list.is_empty() {
-        model.notes.push(format!(
-            "Plugins are not read, nor which joints they drive: {}.",
-            list.join(", ")
-        ));
     }
 }

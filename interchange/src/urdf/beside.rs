@@ -3,16 +3,18 @@
 
 use super::Tree;
 use crate::{
+    account::YAML,
     files::{Files, Place},
     model::{Closure, ClosureKind, Kind, Model, Pose},
+    prune::record_key,
 };
 use nalgebra::Point3;
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
 /// Reads the file beside, if there is one.
 pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
     let name = files.name(file);
-    let urdf = std::path::Path::new(&name);
+    let urdf = Path::new(&name);
     let found = ["yaml", "yml"].map(|ending| urdf.with_extension(ending));
     let Some(path) = found.into_iter().find(|path| path.is_file()) else {
         return;
@@ -28,6 +30,9 @@ pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
         "Loops and motors are those of `{}` beside it.",
         path.file_name().unwrap_or_default().to_string_lossy()
     ));
+    for (key, (place, value)) in &entries {
+        record_key(files, &YAML, "yaml", key, &value.words().join(" "), place);
+    }
     for (key, (place, value)) in &entries {
         match key.as_str() {
             "name_mot" => motors(files, place, value, model),

@@ -2,9 +2,11 @@
 
 use super::{Links, Tree, body, origin};
 use crate::{
+    account::Use,
+    couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
-    model::{Follow, Joint, Kind, Model, Pose},
+    model::{Joint, Kind, Model, Pose},
     options::Options,
     xml::Element,
 };
@@ -204,56 +206,33 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     found
 }
 
-/// Joints that follow others.
-pub(super) fn follow(files: &Files, root: &Element, model: &mut Model) {
+/// The relations of `<mimic>`.
+pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("joint") {
         let Some(mimic) = element.child("mimic") else {
             continue;
         };
         let own = element.get("name").and_then(|name| model.joint_named(name));
-        let Some(own) = own else { continue };
+        let Some(follower) = own else {
+            let reason = "the joint does not move";
+            files.record(Use::Ignored, &mimic.place, "mimic", None, reason);
+            continue;
+        };
         let Some(name) = mimic.required(files, "joint") else {
             continue;
         };
-        let Some(joint) = model.joint_named(name).filter(|&joint| joint != own) else {
+        let Some(leader) = model.joint_named(name) else {
             let message = format!("there is no joint `{name}` that moves to follow");
-            files.report(
-                &mimic.place,
-                message,
-                "name another joint that is not fixed",
-            );
+            let help = "name another joint that is not fixed";
+            files.report(&mimic.place, message, help);
             continue;
         };
-        if model.joints[joint].follow.is_some() {
-            let help = "let each joint follow one that follows none";
-            files.report(&mimic.place, "joints follow each other in a row", help);
-            continue;
-        }
-        let factor = mimic.number(files, "multiplier", 1.0);
-        let offset = mimic.number(files, "offset", 0.0);
-        model.joints[own].follow = Some(Follow {
-            joint,
-            factor,
-            offset,
+        couplings.add(Coupling {
+            follower,
+            leader,
+            factor: mimic.number(files, "multiplier", 1.0),
+            offset: mimic.number(files, "offset", 0.0),
+            place: mimic.place.clone(),
         });
-    }
-}
-
-/// Which joints `<transmission>` drives.
-pub(super) fn motors(root: &Element, model: &mut Model) {
-    for transmission in root.all("transmission") {
-        let reduction = transmission
-            .child("actuator")
-            .and_then(|a| a.child("mechanicalReduction"));
-        for joint in transmission.all("joint") {
-            let Some(at) = joint.get("name").and_then(|name| model.joint_named(name)) else {
-                continue;
-            };
-            model.says_motors = true;
-            model.joints[at].actuated = true;
-            if reduction.is_some() {
-                "through a gear, see its <transmission>".clone_into(&mut model.joints[at].drive);
-            }
-        }
     }
 }

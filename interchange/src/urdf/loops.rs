@@ -3,15 +3,17 @@
 
 use super::{Tree, joints, origin};
 use crate::{
+    couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
-    model::{Closure, ClosureKind, Follow, Model, Pose},
+    model::{Closure, ClosureKind, Model, Pose},
     xml::Element,
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 
 pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
     let named = |element: &Element| element.get("name").unwrap_or(&element.name).to_owned();
+    ball_constraints(files, root, tree, model);
     for (tag, ends, frames) in NOTATIONS {
         for element in root.all(tag) {
             let frame = |at: usize| {
@@ -42,7 +44,35 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
             });
         }
     }
-    couplings(files, root, model);
+}
+
+/// `<drake:ball_constraint>`: a point of one body that coincides with a point of another.
+fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
+    for element in root.all("ball_constraint") {
+        let end = |body: &str, point: &str| {
+            let body = element.child(body)?;
+            let body = tree.find(files, model, body.required(files, "name")?, &body.place)?;
+            let point = element.child(point);
+            let point = point.map_or(Some([0.0; 3]), |point| point.numbers(files, "value"))?;
+            Some((body, Point3::from(point)))
+        };
+        let first = end("ball_constraint_body_A", "ball_constraint_p_AP");
+        let second = end("ball_constraint_body_B", "ball_constraint_p_BQ");
+        let (Some(first), Some(second)) = (first, second) else {
+            let message = "the constraint does not say which points of which links coincide";
+            let help = "give drake:ball_constraint_body_A, _p_AP, _body_B and _p_BQ";
+            files.report(&element.place, message, help);
+            continue;
+        };
+        model.closures.push(Closure {
+            name: element.name.clone(),
+            kind: ClosureKind::Point {
+                bodies: [first.0, second.0],
+                at: [first.1, second.1],
+            },
+            place: element.place.clone(),
+        });
+    }
 }
 
 /// Elements of closures, those of their two ends, and those of the frames on them (in the end itself where empty).
@@ -108,11 +138,12 @@ fn upright(axis: &Vector3<f64>) -> Pose {
 }
 
 /// `<coupling>` of URDF+: the motion between two links follows that between others, by a ratio.
-fn couplings(files: &Files, root: &Element, model: &mut Model) {
+pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("coupling") {
         let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));
         let joint = |link: Option<&str>| model.bodies[model.body_named(link?)?].joint;
-        let (Some(leader), Some(own)) = (joint(end("predecessor")), joint(end("successor"))) else {
+        let (Some(leader), Some(follower)) = (joint(end("predecessor")), joint(end("successor")))
+        else {
             let message = "the coupling does not join two links that joints carry";
             let help = "name links behind moving joints, or write the coupling as <mimic>";
             files.report(&element.place, message, help);
@@ -121,19 +152,12 @@ fn couplings(files: &Files, root: &Element, model: &mut Model) {
         let ratio = element
             .child("ratio")
             .map_or(1.0, |ratio| ratio.number(files, "value", 1.0));
-        if leader == own || model.joints[leader].follow.is_some() {
-            let message = "the coupling's joints follow each other";
-            files.report(
-                &element.place,
-                message,
-                "let one joint follow one that follows none",
-            );
-            continue;
-        }
-        model.joints[own].follow = Some(Follow {
-            joint: leader,
+        couplings.add(Coupling {
+            follower,
+            leader,
             factor: ratio,
             offset: 0.0,
+            place: element.place.clone(),
         });
     }
 }

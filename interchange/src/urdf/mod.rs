@@ -3,13 +3,19 @@
 mod beside;
 mod joints;
 mod loops;
+mod massless;
+mod others;
+mod transmissions;
 
 use crate::{
+    account::{URDF, Use},
     bounds,
+    couplings::Couplings,
     files::{Files, Place},
     geometry::exact,
     model::{Body, Inertia, Model, Pose},
     options::Options,
+    prune::keep_honoured,
     xml::{self, Element},
 };
 use nalgebra::{Matrix3, Point3, Translation3};
@@ -17,24 +23,28 @@ use std::collections::BTreeMap;
 
 /// Reads a robot; what is wrong is noted in the files.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
-    let root = xml::parse(
-        files,
-        file,
-        &["visual", "collision", "material", "gazebo", "sensor"],
-    )?;
+    let mut root = xml::parse(files, file)?;
     if root.name != "robot" {
         let message = format!("`{}` is no robot of URDF", root.name);
         files.report(&root.place, message, "the first element of URDF is <robot>");
         return None;
     }
+    let shaped = massless::shaped_links(&root);
+    keep_honoured(files, &URDF, &mut root);
     bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("name").unwrap_or("robot"));
     let links = links(files, &root);
     let tree = joints::tree(files, &root, &links, options, &mut model)?;
-    joints::follow(files, &root, &mut model);
-    joints::motors(&root, &mut model);
+    transmissions::read(files, &root, &mut model);
     loops::read(files, &root, &tree, &mut model);
     beside::read(files, file, &tree, &mut model);
+    others::report(files, file, &tree);
+    massless::report(files, &shaped, &tree, &model);
+    // After the file beside, which may turn joints into balls.
+    let mut couplings = Couplings::default();
+    joints::mimics(files, &root, &model, &mut couplings);
+    loops::couplings(files, &root, &model, &mut couplings);
+    couplings.resolve(files, &mut model);
     files.is_clean().then_some(model)
 }
 
@@ -86,6 +96,13 @@ fn body(files: &Files, link: &Element, parent: usize, placement: Pose) -> Body {
 }
 
 fn inertia(files: &Files, inertial: &Element) -> Inertia {
+    for tag in ["mass", "inertia"] {
+        if inertial.child(tag).is_none() {
+            let place = &inertial.place;
+            let reason = "absent: zero in the model";
+            files.record(Use::Reported, place, "inertial", Some(tag), reason);
+        }
+    }
     let mass = inertial
         .child("mass")
         .map_or(0.0, |mass| mass.number(files, "value", 0.0));

@@ -1,0 +1,194 @@
+//! SDFormat 1.4 to 1.12: the elements and attributes of its specification.
+
+use super::table::{Rule, Table, Treatment, rejected, reported, unless};
+use Treatment::{Container, Honoured, Irrelevant, Opaque};
+
+const APPEARANCE: Treatment = Irrelevant("appearance");
+const CONTACT: Treatment = Irrelevant("contact and collision");
+const SENSORS: Treatment = Irrelevant("sensors");
+const SIMULATION: Treatment = Irrelevant("settings of the simulation");
+
+const LIMITS: Treatment = Irrelevant("force limits and softness of limits");
+
+pub(crate) const TABLE: Table = Table { rules: RULES };
+
+/// An element whose text is read.
+const fn text(within: &'static str, elements: &'static str) -> Rule {
+    whole(within, elements, Honoured)
+}
+
+/// An element without attributes of its own.
+const fn whole(within: &'static str, elements: &'static str, treatment: Treatment) -> Rule {
+    Rule {
+        within,
+        elements,
+        treatment,
+        attributes: &[],
+    }
+}
+
+const RULES: &[Rule] = &[
+    Rule {
+        within: "",
+        elements: "sdf gazebo",
+        treatment: Honoured,
+        attributes: &[("version", Honoured)],
+    },
+    Rule {
+        within: "sdf gazebo",
+        elements: "world",
+        treatment: Honoured,
+        attributes: &[("name", SIMULATION)],
+    },
+    text("world link", "gravity"),
+    whole(
+        "sdf gazebo world",
+        "actor audio atmosphere gui light magnetic_field physics population road scene spherical_coordinates state",
+        SIMULATION,
+    ),
+    whole(
+        "world",
+        "wind",
+        Irrelevant("acts on links with `enable_wind`, which are reported"),
+    ),
+    whole(
+        "world",
+        "plugin",
+        reported("plugins are not read, nor forces that they exert"),
+    ),
+    Rule {
+        within: "sdf gazebo world model",
+        elements: "model",
+        treatment: Honoured,
+        attributes: &[("name placement_frame canonical_link", Honoured)],
+    },
+    text("model include", "static"),
+    whole("model", "self_collide", CONTACT),
+    whole("model", "allow_auto_disable gripper", SIMULATION),
+    whole(
+        "model link",
+        "enable_wind",
+        unless(
+            "false False 0",
+            "the force of the wind is missing from the model",
+        ),
+    ),
+    Rule {
+        within: "model include",
+        elements: "plugin",
+        treatment: Opaque,
+        attributes: &[("name filename", Honoured)],
+    },
+    // Includes.
+    Rule {
+        within: "sdf gazebo world model",
+        elements: "include",
+        treatment: Honoured,
+        attributes: &[("merge", Honoured)],
+    },
+    text("include", "uri name placement_frame"),
+    whole(
+        "include",
+        "params",
+        rejected(
+            "an <include> that changes what it includes is not supported",
+            "write the model out: `gz sdf -p FILE` does",
+        ),
+    ),
+    Rule {
+        within: "model include link joint frame inertial",
+        elements: "pose",
+        treatment: Honoured,
+        attributes: &[("relative_to frame degrees rotation_format", Honoured)],
+    },
+    Rule {
+        within: "world model",
+        elements: "frame",
+        treatment: Honoured,
+        attributes: &[("name attached_to", Honoured)],
+    },
+    // Links.
+    Rule {
+        within: "model",
+        elements: "link",
+        treatment: Honoured,
+        attributes: &[("name", Honoured)],
+    },
+    Rule {
+        within: "link",
+        elements: "inertial",
+        treatment: Honoured,
+        attributes: &[("auto", Honoured)],
+    },
+    text("inertial", "mass inertia"),
+    text("inertia", "ixx ixy ixz iyy iyz izz"),
+    whole(
+        "inertial",
+        "density auto_inertia_params",
+        Irrelevant("inertias from shapes are not read, which is reported"),
+    ),
+    whole(
+        "inertial",
+        "fluid_added_mass",
+        rejected(
+            "the added mass of a fluid is not supported",
+            "remove <fluid_added_mass> if the robot moves in air",
+        ),
+    ),
+    whole(
+        "link",
+        "kinematic",
+        unless("false False 0", "the link moves by its joints in the model"),
+    ),
+    whole("link", "velocity_decay", Container),
+    whole(
+        "velocity_decay",
+        "linear angular",
+        unless("0", "the damping of the link is missing from the model"),
+    ),
+    whole("link", "self_collide collision", CONTACT),
+    whole(
+        "link",
+        "visual light projector particle_emitter material audio_sink audio_source",
+        APPEARANCE,
+    ),
+    whole("link joint", "sensor", SENSORS),
+    whole("link", "must_be_base_link battery", SIMULATION),
+    // Joints.
+    Rule {
+        within: "world model",
+        elements: "joint",
+        treatment: Honoured,
+        attributes: &[("name type", Honoured)],
+    },
+    text(
+        "joint",
+        "parent child gearbox_ratio gearbox_reference_body thread_pitch screw_thread_pitch axis axis2",
+    ),
+    whole("joint", "physics", SIMULATION),
+    Rule {
+        within: "axis axis2",
+        elements: "xyz",
+        treatment: Honoured,
+        attributes: &[("expressed_in", Honoured)],
+    },
+    text("axis axis2", "use_parent_model_frame dynamics limit"),
+    whole(
+        "axis axis2",
+        "initial_position",
+        Irrelevant("home is the configuration in which all joints are zero"),
+    ),
+    text(
+        "dynamics",
+        "damping friction spring_stiffness spring_reference",
+    ),
+    text("limit", "lower upper velocity"),
+    whole("limit", "effort stiffness dissipation", LIMITS),
+    Rule {
+        within: "axis axis2",
+        elements: "mimic",
+        treatment: Honoured,
+        attributes: &[("joint axis", Honoured)],
+    },
+    text("mimic", "multiplier offset reference"),
+];

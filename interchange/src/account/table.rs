@@ -1,0 +1,146 @@
+//! The form of the tables: what import does with each element and attribute of a format.
+
+use std::collections::BTreeMap;
+
+/// What import does with an element or an attribute.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Treatment {
+    /// It is read.
+    Honoured,
+    /// Its attributes are read; what is inside it is its own.
+    Opaque,
+    /// The element itself says nothing; its attributes and children have treatments of their own.
+    Container,
+    /// It is left out and has no effect on the dynamics of rigid bodies.
+    Irrelevant(&'static str),
+    /// It is left out and changes the model, unless its value is the neutral one.
+    Reported {
+        neutral: &'static str,
+        reason: &'static str,
+    },
+    /// The file is rejected, unless the value is the neutral one.
+    Rejected {
+        neutral: &'static str,
+        reason: &'static str,
+        help: &'static str,
+    },
+}
+
+/// The treatment of elements of a format, and of their attributes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rule {
+    /// The elements that they stand in, separated by blanks; any where empty.
+    pub(crate) within: &'static str,
+    /// Their names, separated by blanks.
+    pub(crate) elements: &'static str,
+    pub(crate) treatment: Treatment,
+    /// Names of attributes, separated by blanks, with their treatment.
+    pub(crate) attributes: &'static [(&'static str, Treatment)],
+}
+
+/// The table of a format.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table {
+    pub(crate) rules: &'static [Rule],
+}
+
+/// A table by names.
+pub(crate) struct Index {
+    by_parent: BTreeMap<(&'static str, &'static str), &'static Rule>,
+    by_name: BTreeMap<&'static str, &'static Rule>,
+}
+
+impl Index {
+    pub(crate) fn new(table: &Table) -> Self {
+        let (mut by_parent, mut by_name) = (BTreeMap::new(), BTreeMap::new());
+        for rule in table.rules {
+            for name in rule.elements.split_whitespace() {
+                if rule.within.is_empty() {
+                    by_name.insert(name, rule);
+                }
+                for parent in rule.within.split_whitespace() {
+                    by_parent.insert((parent, name), rule);
+                }
+            }
+        }
+        Self { by_parent, by_name }
+    }
+
+    /// The rule of an element in another one; none of an unknown element.
+    pub(crate) fn rule(&self, parent: &str, name: &str) -> Option<&'static Rule> {
+        let found = self.by_parent.get(&(parent, name));
+        found.or_else(|| self.by_name.get(name)).copied()
+    }
+}
+
+impl Rule {
+    /// The treatment of an attribute; none of an unknown one.
+    pub(crate) fn attribute(&self, name: &str) -> Option<Treatment> {
+        let mut all = self.attributes.iter();
+        let found = all.find(|(names, _)| names.split_whitespace().any(|own| own == name));
+        found.map(|(_, treatment)| *treatment)
+    }
+}
+
+/// A value that changes the model unless it is the neutral one.
+pub(super) const fn unless(neutral: &'static str, reason: &'static str) -> Treatment {
+    Treatment::Reported { neutral, reason }
+}
+
+/// Something that always changes the model.
+pub(super) const fn reported(reason: &'static str) -> Treatment {
+    unless("", reason)
+}
+
+/// Something with which the file is not read.
+pub(super) const fn rejected(reason: &'static str, help: &'static str) -> Treatment {
+    Treatment::Rejected {
+        neutral: "",
+        reason,
+        help,
+    }
+}
+
+/// The neutral value of matrices: four rows of four numbers.
+pub(super) const IDENTITY: &str = "identity";
+
+/// Whether a value consists of neutral numbers or words, or is the identity.
+pub(crate) fn is_neutral(value: &str, neutral: &str) -> bool {
+    if neutral.is_empty() {
+        return false;
+    }
+    if neutral == IDENTITY {
+        let words = value.split([' ', ',']).filter(|word| !word.is_empty());
+        let numbers: Vec<Option<f64>> = words.map(|word| word.parse().ok()).collect();
+        let mut entries = numbers.iter().enumerate();
+        return numbers.len() == 16
+            && entries.all(|(at, value)| *value == Some(if at % 5 == 0 { 1.0 } else { 0.0 }));
+    }
+    let is_one_of = |word: &str| neutral.split_whitespace().any(|own| own == word);
+    let is_number = |word: &str| {
+        let given = word.parse::<f64>();
+        let mut own = neutral.split_whitespace().map(str::parse::<f64>);
+        given.is_ok_and(|given| own.any(|own| own == Ok(given)))
+    };
+    let mut words = value
+        .split([' ', '\t', '\n', '\r', ','])
+        .filter(|word| !word.is_empty());
+    words.all(|word| is_one_of(word) || is_number(word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_neutral;
+
+    #[test]
+    fn values_are_compared_as_numbers_and_as_words() {
+        assert!(is_neutral("0.0 0 -0", "0"));
+        assert!(is_neutral("False", "false False 0"));
+        assert!(!is_neutral("0 1e-9", "0"));
+        assert!(!is_neutral("true", "false"));
+        assert!(!is_neutral("anything", ""));
+        let rows = |first: &str| format!("{first} 0 1 0 0 0 0 1 0 0 0 0 1");
+        assert!(is_neutral(&rows("1 0 0 0"), super::IDENTITY));
+        assert!(!is_neutral(&rows("0 1 0 0"), super::IDENTITY));
+    }
+}

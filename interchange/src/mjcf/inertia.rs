@@ -1,0 +1,217 @@
+//! Inertias of bodies: of `<inertial>`, or of the shapes of their geoms as MuJoCo computes them.
+
+use super::Reader;
+use crate::{
+    account::Use,
+    files::Files,
+    geometry::exact,
+    model::{Inertia, Pose},
+    xml::Element,
+};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use std::f64::consts::PI;
+
+/// MuJoCo's density of geoms, kg/m³.
+const DENSITY: f64 = 1000.0;
+
+/// The inertia of a body, and whether it has some that cannot be computed from the file.
+pub(super) fn read(reader: &Reader<'_>, body: &Element, class: &str) -> (Option<Inertia>, bool) {
+    let is_from_geoms = reader.compiler.inertia_from_geometry;
+    let inertial = inertial(reader, body, &Pose::identity());
+    match (is_from_geoms, inertial) {
+        (Some(true), _) | (None, None) => of_geoms(reader, body, class, &Pose::identity()),
+        (_, inertial) => (inertial, false),
+    }
+}
+
+/// `<inertial>` of a body, which may stand in a frame of the body.
+fn inertial(reader: &Reader<'_>, element: &Element, offset: &Pose) -> Option<Inertia> {
+    if let Some(own) = element.child("inertial") {
+        return Some(of_inertial(reader, own).seen(offset));
+    }
+    element.all("frame").find_map(|frame| {
+        let offset = offset * reader.compiler.frame(reader.files, frame);
+        inertial(reader, frame, &offset)
+    })
+}
+
+fn of_inertial(reader: &Reader<'_>, inertial: &Element) -> Inertia {
+    let files = reader.files;
+    let mass = inertial.number(files, "mass", 0.0);
+    let frame = reader.compiler.frame(files, inertial);
+    if let Some([xx, yy, zz, xy, xz, yz]) = inertial.numbers(files, "fullinertia") {
+        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        // MuJoCo turns its frame to the principal axes; the tensor is that of the body's.
+        let frame = Pose::from_parts(frame.translation, Rotation3::identity());
+        return about_centre(mass, tensor).seen(&frame);
+    }
+    let diagonal = inertial
+        .numbers::<3>(files, "diaginertia")
+        .unwrap_or_default();
+    let rotation = exact::cleaned(&frame.rotation);
+    let frame = Pose::from_parts(frame.translation, rotation);
+    about_centre(mass, Matrix3::from_diagonal(&Vector3::from(diagonal))).seen(&frame)
+}
+
+fn about_centre(mass: f64, tensor: Matrix3<f64>) -> Inertia {
+    Inertia {
+        mass,
+        centre: Point3::origin(),
+        tensor,
+    }
+}
+
+/// The sum of the geoms of a body, also of those in frames.
+fn of_geoms(
+    reader: &Reader<'_>,
+    element: &Element,
+    class: &str,
+    offset: &Pose,
+) -> (Option<Inertia>, bool) {
+    let (mut sum, mut is_unknown) = (None, false);
+    for child in &element.children {
+        let (inertia, unknown) = match child.name.as_str() {
+            "geom" => {
+                let whole = reader.defaults.apply(reader.files, child, class);
+                match geom(reader, &whole) {
+                    Shape::Body(own) => (Some(own.seen(offset)), false),
+                    Shape::Empty => (None, false),
+                    Shape::Unknown => {
+                        let reason = "the inertia of this shape is not computed: the body's has no value here";
+                        let place = &child.place;
+                        reader
+                            .files
+                            .record(Use::Reported, place, "geom", None, reason);
+                        (None, true)
+                    }
+                }
+            }
+            "frame" => {
+                let class = child.get("childclass").unwrap_or(class);
+                let offset = offset * reader.compiler.frame(reader.files, child);
+                of_geoms(reader, child, class, &offset)
+            }
+            _ => continue,
+        };
+        is_unknown |= unknown;
+        sum = match (sum, inertia) {
+            (Some(sum), Some(own)) => Some(own.with(&sum)),
+            (sum, own) => own.or(sum),
+        };
+    }
+    (sum.filter(|_| !is_unknown), is_unknown)
+}
+
+/// What a geom adds to its body.
+enum Shape {
+    Body(Inertia),
+    Empty,
+    Unknown,
+}
+
+fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
+    let files = reader.files;
+    let [low, high] = reader.compiler.inertia_groups;
+    let group = geom.number(files, "group", 0.0);
+    let mass = geom
+        .attribute("mass")
+        .map(|_| geom.number(files, "mass", 0.0));
+    let density = geom.number(files, "density", DENSITY);
+    let kind = geom.get("type").unwrap_or("sphere");
+    let is_without_volume = matches!(kind, "plane" | "hfield");
+    if group < low || group > high || is_without_volume || mass.unwrap_or(density) == 0.0 {
+        return Shape::Empty;
+    }
+    let is_solid = geom.get("shellinertia") != Some("true");
+    let solid = solid(reader, geom, kind).filter(|_| is_solid && geom.get("mesh").is_none());
+    let Some((volume, unit)) = solid else {
+        return Shape::Unknown;
+    };
+    let mass = mass.unwrap_or(density * volume);
+    let frame = match geom.numbers::<6>(files, "fromto") {
+        Some(ends) => between(ends).0,
+        None => {
+            let frame = reader.compiler.frame(files, geom);
+            Pose::from_parts(frame.translation, exact::cleaned(&frame.rotation))
+        }
+    };
+    Shape::Body(about_centre(mass, Matrix3::from_diagonal(&(unit * mass))).seen(&frame))
+}
+
+/// The volume of a primitive and its principal moments of inertia for a mass of 1; none of other shapes.
+fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector3<f64>)> {
+    let files: &Files = reader.files;
+    let size = geom.list(files, "size").unwrap_or_default();
+    let length = geom
+        .numbers::<6>(files, "fromto")
+        .map(|ends| between(ends).1);
+    let at = |index: usize| size.get(index).copied();
+    let radius = at(0)?;
+    // Between two points, x and y have the first size.
+    let half_length = |index: usize| length.map_or_else(|| at(index), |length| Some(0.5 * length));
+    let second = if length.is_some() {
+        Some(radius)
+    } else {
+        at(1)
+    };
+    match kind {
+        "sphere" => Some((
+            4.0 / 3.0 * PI * radius.powi(3),
+            uniform(0.4 * radius * radius),
+        )),
+        "ellipsoid" => {
+            let (y, z) = (second?, half_length(2)?);
+            let moments = moments([radius, y, z]) / 5.0;
+            Some((4.0 / 3.0 * PI * radius * y * z, moments))
+        }
+        "box" => {
+            let (y, z) = (second?, half_length(2)?);
+            Some((8.0 * radius * y * z, moments([radius, y, z]) / 3.0))
+        }
+        "cylinder" => {
+            let height = 2.0 * half_length(1)?;
+            let across = (3.0 * radius * radius + height * height) / 12.0;
+            let along = 0.5 * radius * radius;
+            Some((
+                PI * radius * radius * height,
+                Vector3::new(across, across, along),
+            ))
+        }
+        "capsule" => Some(capsule(radius, 2.0 * half_length(1)?)),
+        _ => None,
+    }
+}
+
+fn uniform(value: f64) -> Vector3<f64> {
+    Vector3::repeat(value)
+}
+
+/// Sums of two squares: yy + zz, xx + zz, xx + yy.
+fn moments([x, y, z]: [f64; 3]) -> Vector3<f64> {
+    Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y)
+}
+
+/// A cylinder of a height with half a sphere at each end.
+fn capsule(radius: f64, height: f64) -> (f64, Vector3<f64>) {
+    let ball = 4.0 / 3.0 * PI * radius.powi(3);
+    let cylinder = PI * radius * radius * height;
+    let volume = ball + cylinder;
+    let (ball, cylinder) = (ball / volume, cylinder / volume);
+    let square = radius * radius;
+    let along = cylinder * 0.5 * square + ball * 0.4 * square;
+    // The centre of each half ball is 3/8 of the radius behind the cylinder's end.
+    let across = cylinder * (3.0 * square + height * height) / 12.0
+        + ball * (0.4 * square + 0.25 * height * height + 0.375 * radius * height);
+    (volume, Vector3::new(across, across, along))
+}
+
+/// The frame in the middle of two points whose z axis lies along them, and their distance.
+fn between([ax, ay, az, bx, by, bz]: [f64; 6]) -> (Pose, f64) {
+    let (from, to) = (Vector3::new(ax, ay, az), Vector3::new(bx, by, bz));
+    let along = to - from;
+    let turned = Rotation3::rotation_between(&Vector3::z(), &along);
+    let turned = turned.unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
+    let middle = 0.5 * (from + to);
+    let frame = Pose::from_parts(middle.into(), exact::cleaned(&turned));
+    (frame, along.norm())
+}

@@ -1,0 +1,120 @@
+//! Pruning of a file's tree by the table of its format: readers only see what the table honours. Everything else is
+//! taken out and recorded.
+
+use crate::{
+    account::{Index, Rule, Table, Treatment, Use, is_neutral},
+    files::{Files, Place},
+    xml::Element,
+};
+
+/// Why names outside a table are reported.
+const UNKNOWN: &str = "not in the specification that import knows; not used";
+
+/// Why a neutral value needs no report.
+const NEUTRAL: &str = "this value has no effect";
+
+/// Takes everything that the table does not honour out of a file's tree, and records it.
+pub(crate) fn keep_honoured(files: &Files, table: &Table, root: &mut Element) {
+    let index = Index::new(table);
+    if let Some(rule) = index.rule("", &root.name) {
+        keep_inside(files, &index, rule, root);
+    }
+}
+
+fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element) {
+    let tag = element.name.clone();
+    element.attributes.retain(|(name, value, place)| {
+        let subject = Subject {
+            element: &tag,
+            attribute: Some(name),
+            value,
+            place,
+        };
+        is_kept(files, rule.attribute(name), &subject)
+    });
+    element.children.retain_mut(|child| {
+        let rule = index.rule(&tag, &child.name);
+        let subject = Subject {
+            element: &child.name,
+            attribute: None,
+            value: &child.text.0,
+            place: &child.place,
+        };
+        let is_kept = is_kept(files, rule.map(|rule| rule.treatment), &subject);
+        let Some(rule) = rule else {
+            return is_kept;
+        };
+        if rule.treatment == Treatment::Opaque {
+            child.children.clear();
+        }
+        let is_open = [Treatment::Honoured, Treatment::Opaque, Treatment::Container];
+        if is_open.contains(&rule.treatment) {
+            keep_inside(files, index, rule, child);
+        }
+        is_kept
+    });
+}
+
+/// An element or an attribute of a file.
+struct Subject<'s> {
+    element: &'s str,
+    attribute: Option<&'s str>,
+    value: &'s str,
+    place: &'s Place,
+}
+
+/// Records what is done with an element or attribute; true if the reader is to see it.
+fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -> bool {
+    let record = |kind, reason| {
+        files.record(
+            kind,
+            subject.place,
+            subject.element,
+            subject.attribute,
+            reason,
+        );
+    };
+    match treatment {
+        Some(Treatment::Honoured | Treatment::Opaque) => {
+            record(Use::Honoured, "");
+            return true;
+        }
+        Some(Treatment::Container) => {}
+        Some(Treatment::Irrelevant(reason)) => record(Use::Ignored, reason),
+        Some(Treatment::Reported { neutral, .. } | Treatment::Rejected { neutral, .. })
+            if is_neutral(subject.value, neutral) =>
+        {
+            record(Use::Ignored, NEUTRAL)
+        }
+        Some(Treatment::Reported { reason, .. }) => record(Use::Reported, reason),
+        Some(Treatment::Rejected { reason, help, .. }) => {
+            let element = subject.element;
+            let message = match subject.attribute {
+                Some(attribute) => format!("`{attribute}` of <{element}>: {reason}"),
+                None => format!("<{element}>: {reason}"),
+            };
+            files.report(subject.place, message, help);
+        }
+        None => record(Use::Reported, UNKNOWN),
+    }
+    false
+}
+
+/// Records a key of a format without elements.
+pub(crate) fn record_key(
+    files: &Files,
+    table: &Table,
+    format: &str,
+    key: &str,
+    value: &str,
+    place: &Place,
+) {
+    let rule = Index::new(table).rule("", format);
+    let subject = Subject {
+        element: format,
+        attribute: Some(key),
+        value,
+        place,
+    };
+    is_kept(files, rule.and_then(|rule| rule.attribute(key)), &subject);
+}

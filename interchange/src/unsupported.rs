@@ -1,0 +1,73 @@
+//! Torques of joints that a description cannot have: they are left out and reported.
+
+use crate::{
+    files::Files,
+    format::Format,
+    model::{Joint, Kind, Model},
+};
+
+/// What a file says of the torques of a joint.
+#[derive(Debug, Clone, Copy)]
+enum Torque {
+    Damping,
+    Friction,
+    Rotor,
+    Spring,
+}
+
+/// Leaves torques of balls and, in robots with loops, springs out.
+pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
+    let has_loops = !model.closures.is_empty();
+    for joint in &mut model.joints {
+        if joint.kind == Kind::Ball {
+            let reason = "LEFT OUT: balls have no torques of their own in a description";
+            for torque in given(joint) {
+                report(files, format, joint, torque, reason);
+            }
+            (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
+            joint.spring = None;
+        } else if has_loops && joint.spring.is_some() {
+            let reason = "LEFT OUT: springs of joints are not supported in robots with loops";
+            report(files, format, joint, Torque::Spring, reason);
+            joint.spring = None;
+        }
+    }
+}
+
+/// The torques that a joint has.
+fn given(joint: &Joint) -> Vec<Torque> {
+    let stiffness = joint.spring.map_or(0.0, |(stiffness, _)| stiffness);
+    let all = [
+        (Torque::Damping, joint.damping),
+        (Torque::Friction, joint.friction),
+        (Torque::Rotor, joint.armature),
+        (Torque::Spring, stiffness),
+    ];
+    let given = all.into_iter().filter(|(_, value)| *value != 0.0);
+    given.map(|(torque, _)| torque).collect()
+}
+
+fn report(files: &Files, format: Format, joint: &Joint, torque: Torque, reason: &str) {
+    let (element, attribute) = source(format, torque);
+    files.demote(&joint.place, element, attribute, reason);
+}
+
+/// The element and attribute in which a format gives a torque.
+fn source(format: Format, torque: Torque) -> (&'static str, Option<&'static str>) {
+    let of = |all: [&'static str; 4]| all[torque as usize];
+    match format {
+        Format::Mjcf => {
+            let name = of(["damping", "frictionloss", "armature", "stiffness"]);
+            ("joint", Some(name))
+        }
+        Format::Urdf => {
+            let name = of(["damping", "friction", "armature", "stiffness"]);
+            ("dynamics", Some(name))
+        }
+        Format::Sdf => (
+            of(["damping", "friction", "armature", "spring_stiffness"]),
+            None,
+        ),
+        Format::Par => ("par", Some(of(["FV", "FS", "IA", "K"]))),
+    }
+}

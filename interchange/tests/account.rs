@@ -1,0 +1,279 @@
+//! What an import leaves out of a file is reported, or the file is rejected.
+
+use overact_interchange::{Account, Imported, Options, import};
+use std::path::Path;
+
+/// An import of files in a folder of their own; the first is imported.
+fn imported(files: &[(&str, &str)]) -> Imported {
+    let folder = written(files);
+    import(&folder.path().join(files[0].0), &Options::default()).expect("a robot")
+}
+
+fn written(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    }
+    folder
+}
+
+/// What is reported: line, element, attribute and count of each entry.
+fn reported(account: &Account) -> Vec<String> {
+    let shown = |entry: &overact_interchange::Entry| {
+        assert!(!entry.reason.is_empty());
+        format!("{}: {} ×{}", entry.line, entry.subject(), entry.count)
+    };
+    account.reported.iter().map(shown).collect()
+}
+
+/// The errors of a file, each with its line.
+fn errors(name: &str, text: &str) -> String {
+    let folder = written(&[(name, text)]);
+    let errors = import(&folder.path().join(name), &Options::default()).expect_err(text);
+    let mut all = String::new();
+    for (source, diagnostics) in &errors.0 {
+        for error in diagnostics {
+            let span = error.span.as_ref().expect("a place");
+            assert!(error.help.is_some(), "{}", error.message);
+            all += &format!("{}: {}\n", source.position(span).line, error.message);
+        }
+    }
+    all
+}
+
+/// MJCF of one hinge, with attributes and elements in several places.
+fn hinge(
+    compiler: &str,
+    option: &str,
+    body: &str,
+    joint: &str,
+    actuator: &str,
+    more: &str,
+) -> String {
+    format!(
+        "<mujoco><compiler angle='radian' {compiler}/>\n<option {option}/>\n<worldbody><body {body}>\n\
+         <joint name='j' axis='0 1 0' {joint}/><inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.02 0.02'/>\n\
+         {more}</body></worldbody><actuator>\n<motor joint='j' {actuator}/></actuator></mujoco>"
+    )
+}
+
+#[test]
+fn what_changes_the_model_is_reported_unless_it_is_neutral() {
+    let text = hinge(
+        "",
+        "density='1.2' viscosity='1e-5' timestep='0.001'",
+        "gravcomp='1' user='3'",
+        "springyield='0.2' solreflimit='0.01 1'",
+        "kp='3'",
+        "<plugin plugin='p'><config key='a' value='b'/></plugin><camera name='c'/>",
+    );
+    let text = text.replace("kp=", "ctrlrange=");
+    let found = imported(&[("robot.xml", &text)]);
+    assert_eq!(
+        reported(&found.account),
+        [
+            "2: option density ×1",
+            "2: option viscosity ×1",
+            "3: body gravcomp ×1",
+            "4: joint springyield ×1",
+            "5: plugin ×1"
+        ]
+    );
+    assert!(
+        found.text.contains("# - line 3: body gravcomp: "),
+        "{}",
+        found.text
+    );
+    let text = hinge(
+        "settotalmass='-1'",
+        "density='0' viscosity='0.0'",
+        "gravcomp='0' mocap='false'",
+        "springyield='0'",
+        "armature='0'",
+        "",
+    );
+    let found = imported(&[("robot.xml", &text)]);
+    assert_eq!(reported(&found.account), [""; 0]);
+    assert!(!found.text.contains("Not used"), "{}", found.text);
+}
+
+#[test]
+fn names_outside_the_specification_are_reported_and_counted() {
+    let text = hinge("", "", "weight='2'", "dampign='3'", "", "<mass/>\n<mass/>");
+    let found = imported(&[("robot.xml", &text)]);
+    assert_eq!(
+        reported(&found.account),
+        ["3: body weight ×1", "4: joint dampign ×1", "5: mass ×2"]
+    );
+}
+
+#[test]
+fn what_has_no_effect_is_ignored_with_a_reason() {
+    let found = imported(&[("robot.xml", &hinge("", "timestep='0.001'", "", "", "", ""))]);
+    let ignored = &found.account.ignored;
+    assert_eq!(ignored.len(), 1, "{ignored:?}");
+    assert_eq!(ignored[0].subject(), "option timestep");
+    let honoured = &found.account.honoured;
+    let mass = honoured
+        .iter()
+        .find(|entry| entry.subject() == "inertial mass");
+    assert_eq!(mass.map(|entry| (entry.line, entry.count)), Some((4, 1)));
+}
+
+/// URDF of two links with a joint of a type, and more.
+fn two_links(more: &str) -> String {
+    format!(
+        "<robot name='r' xmlns:drake='d'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>\n\
+         <joint name='j' type='revolute'><parent link='a'/><child link='b'/></joint>\n{more}\n</robot>"
+    )
+}
+
+#[test]
+fn loops_and_couplings_that_are_not_understood_reject_the_file() {
+    for (more, expected) in [
+        (
+            "<gazebo>\n<joint name='l' type='revolute'/></gazebo>",
+            "4: <joint>: joints of <gazebo>",
+        ),
+        (
+            "<drake:linear_bushing_rpy/>",
+            "3: <linear_bushing_rpy>: bushings",
+        ),
+        (
+            "<transmission><type>transmission_interface/DifferentialTransmission</type><joint name='j'/></transmission>",
+            "3: a transmission of type `DifferentialTransmission` couples",
+        ),
+        (
+            "<ros2_control>\n<transmission><plugin>transmission_interface/FourBarLinkageTransmission</plugin>\
+             <joint name='j'/></transmission></ros2_control>",
+            "4: a transmission of type `FourBarLinkageTransmission` couples",
+        ),
+        (
+            "<transmission><actuator name='m'/><actuator name='n'/><joint name='j'/></transmission>",
+            "3: a transmission of type `several joints` couples",
+        ),
+    ] {
+        let said = errors("robot.urdf", &two_links(more));
+        assert!(said.starts_with(expected), "{more}: {said}");
+    }
+    let tendon = "<mujoco><worldbody/>\n<tendon><fixed name='t'/></tendon></mujoco>";
+    assert!(errors("robot.xml", tendon).starts_with("2: <fixed>: forces and couplings"));
+    let on_a_tendon = hinge("", "", "", "", "tendon='t'", "");
+    assert!(errors("robot.xml", &on_a_tendon).starts_with("6: `tendon` of <motor>: "));
+}
+
+#[test]
+fn extensions_of_urdf_are_reported_or_ignored() {
+    let more = "<gazebo reference='b'><material>Red</material><springStiffness>3</springStiffness></gazebo>\n\
+        <gazebo reference='j'><springStiffness>0</springStiffness><unheard_of/></gazebo>\n\
+        <transmission name='t'><type>transmission_interface/SimpleTransmission</type><joint name='j'/>\
+        <actuator name='m'><drake:rotor_inertia value='0.1'/></actuator></transmission>";
+    let found = imported(&[("robot.urdf", &two_links(more))]);
+    assert_eq!(
+        reported(&found.account),
+        [
+            "3: springStiffness ×1",
+            "4: unheard_of ×1",
+            "5: rotor_inertia value ×1"
+        ]
+    );
+}
+
+#[test]
+fn a_yaml_file_of_another_name_that_closes_loops_is_reported() {
+    let robot = two_links("");
+    let yaml = "name_mot: [j]\nclosed_loop: [['a', 'b']]\n";
+    let stranger = "closed_loop: [['x', 'y']]\n";
+    let found = imported(&[
+        ("robot.urdf", &robot),
+        ("other.yaml", yaml),
+        ("stranger.yaml", stranger),
+    ]);
+    let reported = &found.account.reported;
+    assert_eq!(reported.len(), 1, "{reported:?}");
+    assert_eq!(reported[0].subject(), "other.yaml closed_loop");
+    assert!(reported[0].reason.contains("`robot.yaml`"), "{reported:?}");
+}
+
+#[test]
+fn keys_of_yaml_and_par_that_are_not_used_are_reported() {
+    let found = imported(&[
+        ("robot.urdf", &two_links("")),
+        ("robot.yaml", "name_mot: [j]\nrotor_inertia: [0.1]\n"),
+    ]);
+    assert_eq!(reported(&found.account), ["2: yaml rotor_inertia ×1"]);
+    let table = "NL = 1\nNJ = 1\nNF = 1\nant = {0}\nsigma = {0}\nb = {0}\nd = {0}\nr = {0}\ngamma = {0}\n\
+        alpha = {0}\ntheta = {t1}\nM = {1}\nIA = {0.1}\nFX = {3}\nFY = {0}\nQP = {v1}\nW0 = {0,0,1}\nHM = {1}\n";
+    let found = imported(&[("robot.par", table)]);
+    assert_eq!(
+        reported(&found.account),
+        ["14: par FX ×1", "17: par W0 ×1", "18: par HM ×1"]
+    );
+}
+
+#[test]
+fn elements_of_sdformat_that_are_not_used_are_reported() {
+    let text = "<sdf version='1.9'><model name='m'>\n<link name='a'><kinematic>true</kinematic>\
+        <velocity_decay><linear>0.1</linear></velocity_decay><visual name='v'/></link>\n\
+        <joint name='j' type='revolute'><parent>world</parent><child>a</child><axis><xyz>0 0 1</xyz>\
+        <limit><effort>3</effort></limit></axis></joint>\n<plugin name='p' filename='libp.so'><x/></plugin></model></sdf>";
+    let found = imported(&[("robot.sdf", text)]);
+    assert_eq!(
+        reported(&found.account),
+        ["2: kinematic ×1", "2: linear ×1", "4: plugin ×1"]
+    );
+}
+
+#[test]
+fn springs_that_loops_leave_out_are_reported_at_their_joint() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/ankle.xml");
+    let text = std::fs::read_to_string(path).expect("an ankle");
+    let joint = "<joint name=\"pitch\"";
+    assert!(text.contains(joint));
+    let text = text.replace(joint, &format!("{joint} stiffness=\"3\""));
+    let found = imported(&[("ankle.xml", &text)]);
+    let line = text.lines().position(|line| line.contains(joint));
+    let line = line.expect("a line") + 1;
+    assert_eq!(
+        reported(&found.account),
+        [format!("{line}: joint stiffness ×1")]
+    );
+    let honoured = &found.account.honoured;
+    assert!(
+        honoured
+            .iter()
+            .all(|entry| entry.subject() != "joint stiffness")
+    );
+}
+
+#[test]
+fn links_with_a_shape_and_without_mass_are_reported_where_they_move() {
+    let shape = "<visual><geometry/></visual>";
+    let text = two_links("")
+        .replace(
+            "<link name='a'/>",
+            &format!("<link name='a'>{shape}</link>"),
+        )
+        .replace("<inertia ixx='1' iyy='1' izz='1'/>", "");
+    let found = imported(&[("robot.urdf", &text)]);
+    assert_eq!(reported(&found.account), ["1: inertial inertia ×1"]);
+    let more = format!(
+        "<link name='c'>{shape}</link><joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint>\n\
+         <link name='frame'/><joint name='l' type='fixed'><parent link='b'/><child link='frame'/></joint>"
+    );
+    let found = imported(&[("robot.urdf", &two_links(&more))]);
+    assert_eq!(reported(&found.account), ["3: link inertial ×1"]);
+}
+
+#[test]
+fn torques_of_balls_are_reported_by_their_names_in_the_file() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/ankle.xml");
+    let text = std::fs::read_to_string(path).expect("an ankle");
+    let ball = "<joint name=\"left_ball\"";
+    assert!(text.contains(ball));
+    let text = text.replace(ball, &format!("{ball} frictionloss=\"0.1\""));
+    let found = imported(&[("ankle.xml", &text)]);
+    let said = reported(&found.account);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].ends_with("joint frictionloss ×1"), "{said:?}");
+}
