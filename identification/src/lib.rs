@@ -50,6 +50,7 @@ mod series;
 mod settings;
 mod significant;
 mod thresholds;
+mod units;
 mod validation;
 mod widest;
 
@@ -64,7 +65,7 @@ pub use calibration::{
 };
 pub use called::{called, titled};
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
-pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Time, Variant};
+pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Scales, Time, Variant};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},

@@ -25,6 +25,7 @@ pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: S
 pub(crate) const fn title(kind: CheckKind) -> &'static str {
     match kind {
         CheckKind::Degrees => "unit of the positions",
+        CheckKind::Unit => "units of time, positions and torques",
         CheckKind::Closure => "closure of the loops",
         CheckKind::WrongSign => "signs",
         CheckKind::WrongGain => "gains of the drives",

@@ -49,6 +49,7 @@ const HOUSES: [House; 7] = [
             "significant",
             "widest",
             "called",
+            "units",
             "blocks",
             "thresholds",
             "series",

@@ -34,6 +34,7 @@ mod problems;
 mod resampling;
 mod rows;
 mod samples;
+mod scales;
 mod signals;
 mod source;
 mod spill;
@@ -61,6 +62,7 @@ pub use parquet_file::write_parquet;
 pub use periods::Periods;
 use rayon::prelude::*;
 pub use samples::Samples;
+pub use scales::Scales;
 
 use crate::error::Error;
 use arrays::Arrays;

@@ -23,6 +23,7 @@ mod reversals;
 pub(super) mod smoothing;
 mod suspected;
 mod torque_faults;
+pub(crate) mod units;
 
 use overact::Model;
 
@@ -102,8 +103,9 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 19] = [
+const CHECKS: [Function; 20] = [
     raw_numbers::check,
+    units::check,
     repeated::check,
     course::check,
     closure::check,
