@@ -33,6 +33,7 @@ pub(crate) const fn title(kind: CheckKind) -> &'static str {
         CheckKind::Delay => "delay between torques and motion",
         CheckKind::MissingParameter => "something that the model lacks",
         CheckKind::Partition => "kept actuators of case 2",
+        CheckKind::Consistency => "bodies that can be built",
         CheckKind::RelativeError => "torques unexplained beyond noise",
         CheckKind::ResidualCorrelation => "residuals that hang together",
         CheckKind::HeldOut => "held-out runs",

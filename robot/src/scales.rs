@@ -26,7 +26,10 @@ impl Robot {
             sampling: experiment.map(|table| table.sampling),
             torque: torque.unwrap_or_default(),
             travel: limit(excitation.and_then(|one| one.travel.as_ref()), swept.travel),
-            velocity: limit(excitation.and_then(|one| one.velocity.as_ref()), swept.velocity),
+            velocity: limit(
+                excitation.and_then(|one| one.velocity.as_ref()),
+                swept.velocity,
+            ),
         }
     }
 }
@@ -44,8 +47,11 @@ fn reach(legs: &[Leg], home_joints: &[f64]) -> f64 {
     });
     let longest = sums.fold(0.0, f64::max);
     let bases = legs.iter().map(|leg| leg.base.at.map(|one| one.value()));
-    let ends = { legs.iter() }.filter_map(|leg| Some(leg.end.as_ref()?.point().map(|one| one.value())));
-    longest.max(spread(&bases.collect::<Vec<_>>())).max(spread(&ends.collect::<Vec<_>>()))
+    let ends =
+        { legs.iter() }.filter_map(|leg| Some(leg.end.as_ref()?.point().map(|one| one.value())));
+    longest
+        .max(spread(&bases.collect::<Vec<_>>()))
+        .max(spread(&ends.collect::<Vec<_>>()))
 }
 
 /// The distance of a joint's frame from the one before, m.
@@ -87,7 +93,10 @@ impl Sweep {
             velocity: vec![0.0; info.actuators.len()],
         };
         for run in &table.runs {
-            let mut own = [vec![0.0; info.actuators.len()], vec![0.0; info.actuators.len()]];
+            let mut own = [
+                vec![0.0; info.actuators.len()],
+                vec![0.0; info.actuators.len()],
+            ];
             for term in &run.terms {
                 let rate = TAU * f64::from(term.harmonic) * run.fundamental;
                 own[0][term.index] += term.amplitude.abs();
@@ -95,7 +104,9 @@ impl Sweep {
             }
             let [travel, velocity] = own;
             let larger = |all: &mut Vec<f64>, own: Vec<f64>| {
-                all.iter_mut().zip(own).for_each(|(most, own)| *most = most.max(own));
+                all.iter_mut()
+                    .zip(own)
+                    .for_each(|(most, own)| *most = most.max(own));
             };
             larger(&mut sweep.travel, travel);
             larger(&mut sweep.velocity, velocity);

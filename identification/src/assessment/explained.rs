@@ -2,7 +2,10 @@
 
 use overact::Model;
 
-use super::{checks::{raw_numbers, units}, positions};
+use super::{
+    checks::{raw_numbers, units},
+    positions,
+};
 use crate::{data::Log, error::Error, monitor::Monitor};
 
 /// Loops that close to this are closed by a change of the positions (m, rad).

@@ -60,7 +60,9 @@ impl Fault {
             let own = own.filter(move |(_, revolute)| **revolute == turns);
             let own: Vec<Option<usize>> = own.map(|(index, _)| Some(index)).collect();
             let all = (own.len() > 1).then_some(None);
-            all.into_iter().chain(own).map(move |which| Self::Unit(slip, which))
+            all.into_iter()
+                .chain(own)
+                .map(move |which| Self::Unit(slip, which))
         };
         let positions = SLIPS
             .iter()

@@ -276,7 +276,9 @@ fn short_help(log: &Log) -> String {
     let seconds = log.samples() as f64 / log.sampling_frequency();
     if seconds < SHORT_RUN {
         let seconds = significant(seconds, 2);
-        format!("{longer}; the run lasts {seconds} s: is the time in minutes? It has to be in seconds")
+        format!(
+            "{longer}; the run lasts {seconds} s: is the time in minutes? It has to be in seconds"
+        )
     } else {
         longer.to_owned()
     }

@@ -73,10 +73,10 @@ pub(crate) struct Kinds {
 }
 
 /// Decades by which a slip has to bring quantities nearer to usual values.
-const NEARER: f64 = 1.0;
+const NEARER: f64 = 0.5;
 
 /// Decades that a less usual slip has to be better.
-const LESS_USUAL: f64 = 0.05;
+const LESS_USUAL: f64 = 0.01;
 
 impl Slip {
     /// The factor by which the slip has multiplied a quantity.
@@ -145,7 +145,11 @@ impl Slip {
         match self.signal {
             Signal::Time => format!(
                 "is the time in {unit}? It has to be in seconds: {} the column by {}",
-                if self.factor > 1.0 { "divide" } else { "multiply" },
+                if self.factor > 1.0 {
+                    "divide"
+                } else {
+                    "multiply"
+                },
                 self.factor.max(1.0 / self.factor).round()
             ),
             Signal::Angles | Signal::Lengths => format!(

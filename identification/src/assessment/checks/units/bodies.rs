@@ -100,9 +100,10 @@ fn densities(
     };
     for one in clear {
         let base = context.base;
-        let (Some(&kept), Some(terms)) =
-            (base.columns.get(one.column), base.regroupings.get(one.column))
-        else {
+        let (Some(&kept), Some(terms)) = (
+            base.columns.get(one.column),
+            base.regroupings.get(one.column),
+        ) else {
             continue;
         };
         let (Some(own), Some(small)) = (volume(kept, lengths.long), volume(kept, lengths.short))

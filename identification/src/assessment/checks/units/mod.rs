@@ -63,11 +63,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// A hint to the unit of the raw numbers of a run, where they contradict physical scales.
-pub(crate) fn hint(
-    model: &dyn Model,
-    run: &str,
-    monitor: &Monitor,
-) -> Option<String> {
+pub(crate) fn hint(model: &dyn Model, run: &str, monitor: &Monitor) -> Option<String> {
     let run = RunMotion::new(model, &Scales::default(), run, monitor);
     let drive = run.single_drives().into_iter().next();
     let found = drive.or_else(|| Finding::of_run(&run, &[]))?;

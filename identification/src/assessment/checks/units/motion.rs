@@ -53,12 +53,7 @@ struct DriveMotion {
 }
 
 impl RunMotion {
-    pub(super) fn new(
-        model: &dyn Model,
-        scales: &Scales,
-        name: &str,
-        monitor: &Monitor,
-    ) -> Self {
+    pub(super) fn new(model: &dyn Model, scales: &Scales, name: &str, monitor: &Monitor) -> Self {
         let info = model.info();
         let frequency = monitor.frequency();
         let (ranges, speeds) = (monitor.ranges(), monitor.usual_speeds());
@@ -96,7 +91,10 @@ impl RunMotion {
     pub(super) fn quantities(&self) -> impl Iterator<Item = &Quantity> {
         let count = self.drives.iter().map(|drive| drive.motion.len()).max();
         let most = (0..count.unwrap_or(0)).filter_map(|place| {
-            let own = self.drives.iter().filter_map(move |drive| drive.motion.get(place));
+            let own = self
+                .drives
+                .iter()
+                .filter_map(move |drive| drive.motion.get(place));
             own.max_by(|a, b| (a.value / a.usual.high).total_cmp(&(b.value / b.usual.high)))
         });
         let torques = self.drives.iter().filter_map(|drive| drive.torque.as_ref());
@@ -120,7 +118,10 @@ impl RunMotion {
         let (bad, good): (Vec<_>, Vec<_>) = moving.partition(|drive| contradicts(&drive.motion));
         let mut found = Vec::new();
         if !good.is_empty() {
-            found.extend(bad.iter().filter_map(|drive| self.of_drive(drive, &drive.motion)));
+            found.extend(
+                bad.iter()
+                    .filter_map(|drive| self.of_drive(drive, &drive.motion)),
+            );
         }
         let torques = self.drives.iter().filter(|drive| drive.torque.is_some());
         let is_bad = |drive: &&DriveMotion| {

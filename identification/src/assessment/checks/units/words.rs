@@ -41,12 +41,21 @@ pub(super) fn hint(found: &Finding) -> String {
 
 /// What contradicts, which slip explains it, what to do.
 fn sentence(found: &Finding) -> String {
-    let told: Vec<String> = found.contradictions.iter().take(NAMED).map(quantity).collect();
+    let told: Vec<String> = found
+        .contradictions
+        .iter()
+        .take(NAMED)
+        .map(quantity)
+        .collect();
     let advice = found.slip.map_or_else(
-        || String::from("check the units of time, positions and torques: they have to be those of SI"),
+        || {
+            String::from(
+                "check the units of time, positions and torques: they have to be those of SI",
+            )
+        },
         Slip::advice,
     );
-    format!("no robot has {}; {advice}", told.join(", "))
+    format!("implausible: {}; {advice}", told.join(", "))
 }
 
 /// A quantity with its bound.
@@ -64,5 +73,9 @@ fn quantity(one: &Quantity) -> String {
     } else {
         format!("at least {}", with_unit(one.possible.low))
     };
-    format!("{} of {} ({bound})", one.name.trim_start_matches("the "), with_unit(one.value))
+    format!(
+        "{} of {} ({bound})",
+        one.name.trim_start_matches("the "),
+        with_unit(one.value)
+    )
 }
