@@ -106,6 +106,7 @@ fn stages(criterion: &mut Criterion) {
         validation: &runs[3..],
         true_values: Some(&truth),
         variants: &[],
+        scales: None,
     };
     group.bench_function("everything, with a held-out run", |bench| {
         bench.iter(|| identify(&robot, &dataset, &settings, &|_| {}).expect("a result"));

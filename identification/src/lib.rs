@@ -50,6 +50,7 @@ mod series;
 mod settings;
 mod significant;
 mod thresholds;
+mod units;
 mod validation;
 mod widest;
 
@@ -64,7 +65,7 @@ pub use calibration::{
 };
 pub use called::{called, titled};
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
-pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Time, Variant};
+pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Scales, Time, Variant};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
@@ -77,8 +78,8 @@ pub use estimation::{
 pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
 pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
-    BaseParameter, Before, Identification, Outcome, Prepared, Progress, RankedProjection,
-    Regrouping, Study, estimate_projection,
+    BaseParameter, Before, Identification, Outcome, Prepared, Progress, RankedProjection, Study,
+    estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
     identify, identify_after, prepare, study,
     tracking::TrackingError,
@@ -93,7 +94,7 @@ pub use regression::{
 };
 pub use result::{
     CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,
-    RunSummary, Stage,
+    Regrouping, RunSummary, Stage,
 };
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Instruments, Normalisation, Settings};

@@ -316,6 +316,7 @@ fn experiments_are_checked() {
             validation: &[],
             true_values: None,
             variants: &[],
+            scales: None,
         };
         identify(model, &dataset, &settings(), &|_| {})
             .expect_err("an error")
@@ -336,6 +337,7 @@ fn experiments_are_checked() {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     // At rest only the offset has a column, and it explains torques of zero.
     let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");

@@ -16,6 +16,7 @@ fn identified(robot: &DualV, rotation: f64) -> Identification {
         validation: &[],
         true_values: Some(&truth),
         variants: &[],
+        scales: None,
     };
     identify(robot, &dataset, &settings(robot), &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -50,6 +50,7 @@ fn identified(settings: &Settings) -> Option<Identification> {
         validation: &validation,
         true_values: None,
         variants: &[],
+        scales: None,
     };
     Some(identify(&EMPS, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}")))
 }

@@ -25,6 +25,7 @@ fn identified(log: &Log, settings: &Settings) -> Result<Identification, Error> {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     identify(&EMPS, &dataset, settings, &|_| {})
 }

@@ -15,6 +15,7 @@ fn identified(robot: &DualV, runs: &[Log], settings: &Settings) -> Identificatio
         validation: &[],
         true_values: Some(&truth),
         variants: &[],
+        scales: None,
     };
     identify(robot, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }

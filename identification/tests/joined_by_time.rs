@@ -179,6 +179,7 @@ fn the_result_says_what_was_interpolated() {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let result =
         identify(&EMPS, &dataset, &settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"));

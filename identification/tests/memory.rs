@@ -75,6 +75,7 @@ fn identified(
             validation: &[],
             true_values: None,
             variants: &[],
+            scales: None,
         },
         &settings,
         &|progress| {

@@ -186,6 +186,7 @@ fn noise_is_covered_by_the_standard_deviations() {
         validation: &validation,
         true_values: Some(&truth),
         variants: &[],
+        scales: None,
     };
     let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     println!("{:#?}", result.estimates);
@@ -229,6 +230,7 @@ fn predicted(run: &Log, from: &Log) -> (f64, f64) {
         validation: std::slice::from_ref(run),
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     let mut all = result.cross_validation.iter();
@@ -253,6 +255,7 @@ fn choices_are_judged_by_runs_that_were_held_out() {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let choices = [vec![0, 1], vec![0, 2], vec![1, 2]];
     let study = study(&Point, &dataset, &choices, &settings(), &|_| {}).expect("a study");

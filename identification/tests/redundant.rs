@@ -97,6 +97,7 @@ fn identified(runs: &[Log], settings: &Settings) -> Identification {
         validation: &validation,
         true_values: Some(&truth),
         variants: &[],
+        scales: None,
     };
     identify(&PAIR, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -191,6 +192,7 @@ fn times_count_from_the_start_of_the_log() {
         validation: &runs,
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let figures = identify(&PAIR, &dataset, &settings, &|_| {})
         .expect("an identification")

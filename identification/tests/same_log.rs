@@ -136,6 +136,7 @@ fn estimated(path: &Path, mapping: &Mapping) -> Vec<f64> {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let result = identify(&EMPS, &dataset, &settings, &|_| {});
     let result = result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));

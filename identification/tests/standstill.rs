@@ -46,6 +46,7 @@ fn identified(limit: Vec<f64>) -> Identification {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     identify(&EMPS, &dataset, &settings(limit), &|_| {}).expect("an identification")
 }
@@ -106,6 +107,7 @@ fn limits_that_leave_little_are_told() {
             validation: &[],
             true_values: None,
             variants: &[],
+            scales: None,
         };
         let result = identify(&EMPS, &dataset, &settings, &|_| {});
         result.expect_err("too little").to_string()
@@ -149,6 +151,7 @@ fn said_of(friction: impl Fn(f64) -> f64) -> String {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     let settings = settings(vec![0.004]);
     let result = identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification");

@@ -37,6 +37,7 @@ fn identified(log: &Log, validation: &[Log]) -> Identification {
         validation,
         true_values: None,
         variants: &[],
+        scales: None,
     };
     identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification")
 }

@@ -25,6 +25,7 @@ pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: S
 pub(crate) const fn title(kind: CheckKind) -> &'static str {
     match kind {
         CheckKind::Degrees => "unit of the positions",
+        CheckKind::Unit => "units of time, positions and torques",
         CheckKind::Closure => "closure of the loops",
         CheckKind::WrongSign => "signs",
         CheckKind::WrongGain => "gains of the drives",
@@ -32,6 +33,7 @@ pub(crate) const fn title(kind: CheckKind) -> &'static str {
         CheckKind::Delay => "delay between torques and motion",
         CheckKind::MissingParameter => "something that the model lacks",
         CheckKind::Partition => "kept actuators of case 2",
+        CheckKind::Consistency => "bodies that can be built",
         CheckKind::RelativeError => "torques unexplained beyond noise",
         CheckKind::ResidualCorrelation => "residuals that hang together",
         CheckKind::HeldOut => "held-out runs",

@@ -1,7 +1,9 @@
 //! What was identified, as the functions of the robot's model take it.
 
 use overact_codegen::RobotModel;
-use overact_identification::{Estimate, Estimator, FunctionParameter, Identification, Stage};
+use overact_identification::{
+    BaseParameter, Estimate, Estimator, FunctionParameter, Identification, Regrouping, Stage,
+};
 use std::collections::BTreeMap;
 
 /// The base estimate of the first model in the base parameters of the functions, the payload's behind them.
@@ -32,11 +34,51 @@ pub(crate) fn functions_base(model: &RobotModel, found: &Identification) -> Vec<
     }
     let named = |(parameter, value)| {
         let base = model.base.iter().find(|base| base.parameter == parameter);
-        let name = match base {
-            Some(base) => model.base_name(base),
-            None => model.parameter_name(parameter),
+        let terms = base.map_or(&[][..], |base| base.regrouped.as_slice());
+        let regrouping = terms.iter().map(|&(other, coefficient)| Regrouping {
+            parameter: model.parameter_name(other),
+            coefficient,
+        });
+        let own = FunctionParameter {
+            name: match base {
+                Some(base) => model.base_name(base),
+                None => model.parameter_name(parameter),
+            },
+            parameter: model.parameter_name(parameter),
+            regrouping: regrouping.collect(),
+            value,
         };
-        FunctionParameter { name, value }
+        distinct(own, &found.base_parameters)
     };
     model.regrouped(&kept).into_iter().map(named).collect()
+}
+
+/// Suffix of a base parameter of the functions whose name is that of another sum of the estimate.
+const OTHER_SUM: char = 'F';
+
+/// Coefficients that differ by less are equal.
+const EQUAL: f64 = 1e-6;
+
+/// The parameter with a name that no estimated base parameter of another sum has.
+fn distinct(mut own: FunctionParameter, estimated: &[BaseParameter]) -> FunctionParameter {
+    let alike = estimated.iter().find(|one| one.name == own.name);
+    if alike.is_some_and(|one| !is_same_sum(&own, one)) {
+        own.name = format!("{}{OTHER_SUM}", own.parameter);
+    }
+    own
+}
+
+/// Whether two base parameters are one sum of standard parameters.
+fn is_same_sum(own: &FunctionParameter, other: &BaseParameter) -> bool {
+    let coefficient = |terms: &[Regrouping], name: &str| {
+        let own = terms.iter().filter(|term| term.parameter == name);
+        own.map(|term| term.coefficient).sum::<f64>()
+    };
+    let all = own.regrouping.iter().chain(&other.regrouping);
+    own.parameter == other.parameter
+        && all.into_iter().all(|term| {
+            let [a, b] = [&own.regrouping, &other.regrouping]
+                .map(|terms| coefficient(terms, &term.parameter));
+            (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1.0)
+        })
 }

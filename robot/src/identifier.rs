@@ -286,9 +286,11 @@ impl<'a> Identifier<'a> {
             _ => None,
         };
         let variants = self.robot.variants();
+        let scales = self.robot.scales();
         let dataset = Dataset {
             runs: beside.as_deref().unwrap_or(self.runs),
             variants: &variants.lent(),
+            scales: Some(&scales),
             ..self.dataset()
         };
         let mut result = identify_after(
@@ -340,6 +342,7 @@ impl<'a> Identifier<'a> {
             validation: self.validation,
             true_values: self.true_values,
             variants: &[],
+            scales: None,
         }
     }
 

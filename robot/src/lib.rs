@@ -74,6 +74,7 @@ mod physical;
 mod prior;
 mod robot;
 mod runs;
+mod scales;
 mod settings;
 mod tracking;
 mod variants;

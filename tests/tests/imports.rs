@@ -88,6 +88,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "significant",
             "widest",
             "called",
+            "units",
             "blocks",
             "thresholds",
             "series",

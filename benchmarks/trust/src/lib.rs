@@ -12,7 +12,7 @@
 //!
 //! [`traps`] are data with one known fault each; `cargo run --release -p overact-trust --bin traps --
 //! robots/dualv.toml` prints what identifications say of them, with `--clean 100` how often they accuse
-//! faultless data.
+//! faultless data. [`units`] are logs in other units; `--bin units` prints the matrix of robots and slips.
 
 pub mod draw;
 pub mod measure;
@@ -20,6 +20,7 @@ pub mod subject;
 pub mod table;
 pub mod tally;
 pub mod traps;
+pub mod units;
 
 pub use draw::Noise;
 pub use measure::{Counted, measure};

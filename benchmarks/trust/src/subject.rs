@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use overact::{Info, Model};
-use overact_identification::{Projection, Settings};
+use overact_identification::{Projection, Scales, Settings};
 use overact_robot::{Robot, Variants};
 use overact_simulation::Experiment;
 use std::{collections::BTreeMap, ffi::OsStr, fs, path::Path};
@@ -18,6 +18,8 @@ pub struct Subject {
     pub truth: BTreeMap<String, f64>,
     /// The robot with other lengths, where nothing but the torques tells of them.
     pub variants: Variants,
+    /// Sizes and limits of the description, by which units are judged.
+    pub scales: Scales,
     /// How it is identified.
     pub settings: Settings,
 }
@@ -56,6 +58,7 @@ impl Subject {
             settings: robot.settings(experiment.sampling_hz),
             truth: robot.true_values().unwrap_or_default(),
             variants: robot.variants(),
+            scales: robot.scales(),
             experiment,
             compiled,
             robot,
@@ -72,6 +75,12 @@ impl Subject {
     #[must_use]
     pub fn info(&self) -> Info<'_> {
         self.model().info()
+    }
+
+    /// The settings of runs sampled at another frequency (Hz), as the command line chooses them.
+    #[must_use]
+    pub fn settings_at(&self, frequency: f64) -> Settings {
+        self.robot.settings(frequency)
     }
 
     /// Shortens all runs to a part of their duration.

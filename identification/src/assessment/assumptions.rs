@@ -46,6 +46,9 @@ pub(crate) fn assumptions(
             "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor, and only gravity tells",
         ),
         String::from(
+            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: a unit that is wrong by a factor of thirty or more is found where physical scales contradict it, a smaller factor is not",
+        ),
+        String::from(
             "the lengths of the description are right as a whole: angles alone fix no scale",
         ),
         String::from(

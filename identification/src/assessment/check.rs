@@ -39,6 +39,12 @@ pub struct Check {
     pub grade: Grade,
     /// What was seen, what it means, what to do: sentences.
     pub words: String,
+    /// The signal that may be in another unit: `time`, `positions` or `torques`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub signal: Option<&'static str>,
+    /// Its numbers by those in the unit of SI.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
     /// The part of the residual's square that it would explain, of a fault that was looked for and found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained: Option<f64>,
@@ -181,6 +187,10 @@ pub enum CheckKind {
     EncoderOffset,
     /// The torques speak of another length than the described one.
     Length,
+    /// Time, positions or torques are in another unit than that of SI.
+    Unit,
+    /// No bodies with positive masses explain the data.
+    Consistency,
     /// A few instants leave most unexplained.
     Outliers,
     /// The robot moves through too few periods.
@@ -227,6 +237,8 @@ impl CheckKind {
             Self::Clock => "clock",
             Self::EncoderOffset => "encoder offset",
             Self::Length => "length",
+            Self::Unit => "unit",
+            Self::Consistency => "physical consistency",
             Self::Outliers => "outliers",
             Self::ShortMotion => "short motion",
             Self::Filters => "filters",
@@ -253,6 +265,7 @@ impl CheckKind {
                 | Self::SwappedColumns
                 | Self::Degrees
                 | Self::StuckEncoder
+                | Self::Unit
         )
     }
 }
@@ -275,6 +288,8 @@ impl Check {
             passed: true,
             grade: Grade::Use,
             words: words.into(),
+            signal: None,
+            factor: None,
             explained: None,
             spoiled: Vec::new(),
             detectable: Vec::new(),
@@ -336,6 +351,14 @@ impl Check {
     #[must_use]
     pub fn of_stage(mut self, stage: Stage) -> Self {
         self.stages = vec![stage];
+        self
+    }
+
+    /// With the signal that may be in another unit, and its numbers by those in the unit of SI.
+    #[must_use]
+    pub const fn in_unit(mut self, signal: &'static str, factor: f64) -> Self {
+        self.signal = Some(signal);
+        self.factor = Some(factor);
         self
     }
 

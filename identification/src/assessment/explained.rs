@@ -2,7 +2,10 @@
 
 use overact::Model;
 
-use super::{checks::raw_numbers, positions};
+use super::{
+    checks::{raw_numbers, units},
+    positions,
+};
 use crate::{data::Log, error::Error, monitor::Monitor};
 
 /// Loops that close to this are closed by a change of the positions (m, rad).
@@ -17,8 +20,13 @@ pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
             .flatten()
             .map(|one| one.words),
     );
-    let suspicious =
-        watched(log).map(|monitor| raw_numbers::suspicious(model, log.name(), monitor));
+    let monitor = watched(log);
+    hints.extend(
+        monitor
+            .as_ref()
+            .and_then(|monitor| units::hint(model, log.name(), monitor)),
+    );
+    let suspicious = monitor.map(|monitor| raw_numbers::suspicious(model, log.name(), monitor));
     hints.extend(suspicious.into_iter().flatten().map(|one| one.words));
     let mut problems = error.problems;
     if let (Some(problem), false) = (problems.first_mut(), hints.is_empty()) {

@@ -6,7 +6,12 @@ use std::f64::consts::PI;
 use overact::{Function, Model, math::wrap_angle};
 
 use super::check::{About, Check, CheckKind, Grade};
-use crate::{data::Log, error::Error, kinematics::approach};
+use crate::{
+    data::Log,
+    error::Error,
+    kinematics::approach,
+    units::{SLIPS, Signal, Slip},
+};
 
 /// Rows of a run that are looked at, and their distance in time (s).
 const ROWS: usize = 200;
@@ -19,7 +24,7 @@ const OFTEN: f64 = 0.002;
 const EXPLAINED: f64 = 0.1;
 
 /// What may have happened to positions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Fault {
     /// Angles are in degrees.
     Degrees,
@@ -27,6 +32,8 @@ pub(crate) enum Fault {
     Swapped(usize, usize),
     /// An actuator counts backwards.
     Reversed(usize),
+    /// Positions of all actuators that turn, or slide, or of one of them, are in another unit.
+    Unit(&'static Slip, Option<usize>),
 }
 
 impl Fault {
@@ -43,6 +50,27 @@ impl Fault {
         faults
     }
 
+    /// All faults, and positions in other units than degrees. Each is tried on a few rows only.
+    fn with_units(model: &dyn Model) -> Vec<Self> {
+        let info = model.info();
+        let mut faults = Self::all(model);
+        let of_all = |slip: &'static Slip| {
+            let turns = slip.signal == Signal::Angles;
+            let own = info.actuator_is_revolute.iter().enumerate();
+            let own = own.filter(move |(_, revolute)| **revolute == turns);
+            let own: Vec<Option<usize>> = own.map(|(index, _)| Some(index)).collect();
+            let all = (own.len() > 1).then_some(None);
+            all.into_iter()
+                .chain(own)
+                .map(move |which| Self::Unit(slip, which))
+        };
+        let positions = SLIPS
+            .iter()
+            .filter(|slip| matches!(slip.signal, Signal::Angles | Signal::Lengths));
+        faults.extend(positions.flat_map(of_all));
+        faults
+    }
+
     /// Takes the fault back in rows of positions.
     pub(crate) fn repair(self, model: &dyn Model, positions: &mut [f64]) {
         let info = model.info();
@@ -56,6 +84,14 @@ impl Fault {
                 }
                 Self::Swapped(i, j) => row.swap(i, j),
                 Self::Reversed(i) => row[i] = -row[i],
+                Self::Unit(slip, Some(i)) => row[i] /= slip.factor,
+                Self::Unit(slip, None) => {
+                    let turns = slip.signal == Signal::Angles;
+                    let positions = row.iter_mut().zip(info.actuator_is_revolute);
+                    positions
+                        .filter(|(_, revolute)| **revolute == turns)
+                        .for_each(|(q, _)| *q /= slip.factor);
+                }
             }
         }
     }
@@ -65,6 +101,14 @@ impl Fault {
         let info = model.info();
         let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
         let (kind, actuator, message) = match self {
+            Self::Unit(slip, which) => {
+                let of = which.map_or_else(
+                    || String::from("all drives of the kind"),
+                    |index| format!("`{}`", name(index)),
+                );
+                let message = format!("{of}: {}", slip.advice());
+                (CheckKind::Unit, which.map(name), message)
+            }
             Self::Degrees => (
                 CheckKind::Degrees,
                 None,
@@ -93,6 +137,11 @@ impl Fault {
         let check = Check::new(kind, About::Model, format!("{message}; {so}"))
             .in_run(run)
             .allowing(Grade::DoNotUse);
+        let check = match self {
+            Self::Degrees => check.in_unit(Signal::Angles.name(), 180.0 / PI),
+            Self::Unit(slip, _) => check.in_unit(slip.signal.name(), slip.factor),
+            Self::Swapped(..) | Self::Reversed(_) => check,
+        };
         match actuator {
             Some(actuator) => check.of_actuator(actuator),
             None => check,
@@ -120,7 +169,7 @@ pub(crate) fn explanation(
         fault.repair(model, &mut rows);
         self::miss(model, &rows)
     };
-    let misses = Fault::all(model).into_iter().filter_map(|fault| {
+    let misses = Fault::with_units(model).into_iter().filter_map(|fault| {
         let left = repaired(&fault)?;
         explains(left, miss, tolerance).then_some((fault, left))
     });

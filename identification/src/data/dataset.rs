@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt};
 
 use overact::Model;
 
-use super::Log;
+use super::{Log, Scales};
 
 /// The data of an identification.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +19,8 @@ pub struct Dataset<'a> {
     /// The robot with other lengths, one by one: whether the torques speak of such a length is asked. Where
     /// loops close, their closure tells much more.
     pub variants: &'a [Variant<'a>],
+    /// What the description says of sizes and limits, by which units are judged.
+    pub scales: Option<&'a Scales>,
 }
 
 /// The robot with one length that is a little longer than described.

@@ -35,6 +35,7 @@ mod problems;
 mod resampling;
 mod rows;
 mod samples;
+mod scales;
 mod signals;
 mod source;
 mod spill;
@@ -62,6 +63,7 @@ pub use parquet_file::write_parquet;
 pub use periods::Periods;
 use rayon::prelude::*;
 pub use samples::Samples;
+pub use scales::Scales;
 
 use crate::error::Error;
 use arrays::Arrays;

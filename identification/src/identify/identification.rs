@@ -23,7 +23,10 @@ use crate::{
     gains::{DriveGain, JointParameter},
     gravity::GravityDirection,
     regression::columns::ColumnSet,
-    result::{CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, RunSummary},
+    result::{
+        CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, Regrouping,
+        RunSummary,
+    },
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -127,15 +130,6 @@ pub struct BaseParameter {
     /// Its true value, where that is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,
-}
-
-/// One term of a base parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Regrouping {
-    /// Name of the parameter that is regrouped.
-    pub parameter: String,
-    /// Its coefficient.
-    pub coefficient: f64,
 }
 
 impl BaseParameter {

@@ -20,7 +20,7 @@ pub(crate) mod tracking;
 use overact::Model;
 
 pub use estimates::{Outcome, estimate_projection};
-pub use identification::{BaseParameter, Identification, Regrouping};
+pub use identification::{BaseParameter, Identification};
 pub(crate) use prepare::LARGEST_STRETCHES;
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
@@ -109,7 +109,7 @@ pub fn identify_after(
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, beside) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
-    let consistent = consistent_all(&prepared, &estimates, &settings.prior, &mut warnings);
+    let (consistent, inconsistent) = consistent_all(&prepared, &estimates, &settings.prior);
     let least_squares = estimates.iter().map(Predictor::of_estimate);
     let others = consistent.iter().map(Predictor::of_consistent);
     let held_out = cross_validate(
@@ -151,6 +151,7 @@ pub fn identify_after(
         systems: &prepared.systems,
         watched: &watched,
         estimates: &estimates,
+        inconsistent: &inconsistent,
         scores: scores.as_ref(),
         narrow: &narrow,
         cross_validation: &cross_validation,

@@ -24,6 +24,8 @@ use crate::{
     error::{Error, Problem},
     monitor::Monitor,
     settings::Settings,
+    significant,
+    units::time_of_sampling,
 };
 
 use forward::Forward;
@@ -237,7 +239,7 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
                 log.samples()
             ))
             .file(log.name())
-            .help("record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]"),
+            .help(short_help(log)),
         );
     }
     let nyquist = log.sampling_frequency() / 2.0;
@@ -250,14 +252,36 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
                 settings.filter_cutoff_hz
             ))
             .file(log.name())
-            .help(if (10.0 * nyquist..1e3 * nyquist).contains(&settings.filter_cutoff_hz) {
-                "is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else set `filter_cutoff` of [identification] to about ten times the bandwidth of the motion"
-            } else {
-                "give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
-            }),
+            .help(cutoff_help(log.sampling_frequency(), settings.filter_cutoff_hz)),
         );
     }
     Error::check(problems)
+}
+
+/// The way out of a cutoff that the sampling frequency does not allow (Hz).
+fn cutoff_help(frequency: f64, cutoff: f64) -> String {
+    let set = "`filter_cutoff` of [identification] about ten times the bandwidth of the motion";
+    match time_of_sampling(frequency, cutoff) {
+        Some(slip) => format!("{}. Else give {set}", slip.advice()),
+        None => format!("give {set}"),
+    }
+}
+
+/// A run that is shorter than this (s) may have its time in a longer unit.
+const SHORT_RUN: f64 = 2.0;
+
+/// The way out of a run with too few samples.
+fn short_help(log: &Log) -> String {
+    let longer = "record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]";
+    let seconds = log.samples() as f64 / log.sampling_frequency();
+    if seconds < SHORT_RUN {
+        let seconds = significant(seconds, 2);
+        format!(
+            "{longer}; the run lasts {seconds} s: is the time in minutes? It has to be in seconds"
+        )
+    } else {
+        longer.to_owned()
+    }
 }
 
 /// `1 actuator`, `2 actuators`.

@@ -27,6 +27,9 @@ const LOST_RATIO: f64 = 4.0;
 /// Part of the steps that are usual, though samples are lost.
 const USUAL: f64 = 0.9;
 
+/// Part of the steps that are no jumps.
+const OF_STEPS: f64 = 0.99;
+
 /// A range of less than so many steps between samples is noise: the robot stands still.
 const STILL_STEPS: f64 = 15.0;
 
@@ -156,6 +159,30 @@ impl Monitor {
         self.positions
             .iter()
             .map(|one| one.speed * per_second)
+            .collect()
+    }
+
+    /// The sampling frequency, Hz.
+    pub(crate) const fn frequency(&self) -> f64 {
+        self.frequency
+    }
+
+    /// The largest speed of each actuator (m/s, rad/s) that is neither noise nor a single jump: that over a few
+    /// samples, or that which one step in a hundred exceeds, whichever is less.
+    pub(crate) fn usual_speeds(&self) -> Vec<f64> {
+        let positions = self.positions.iter().zip(self.speeds());
+        let usual = positions.map(|(one, speed)| {
+            let step = one.sizes.quantile(OF_STEPS);
+            speed.min(step * self.frequency)
+        });
+        usual.collect()
+    }
+
+    /// The largest magnitude of each actuator's torques (N, N m).
+    pub(crate) fn torque_peaks(&self) -> Vec<f64> {
+        let torques = self.torques.iter();
+        torques
+            .map(|[low, high]| low.value.max(high.value))
             .collect()
     }
 

@@ -5,6 +5,7 @@ mod cross_validation;
 mod estimate;
 mod function_parameter;
 mod motor;
+mod regrouping;
 mod run;
 mod stage;
 
@@ -12,5 +13,6 @@ pub use cross_validation::CrossValidation;
 pub use estimate::{Estimate, Estimator, ParameterEstimate};
 pub use function_parameter::FunctionParameter;
 pub use motor::MotorParameter;
+pub use regrouping::Regrouping;
 pub use run::RunSummary;
 pub use stage::Stage;

@@ -43,6 +43,7 @@ fn identified(runs: &[Log]) -> Result<Identification, Error> {
         validation: &[],
         true_values: None,
         variants: &[],
+        scales: None,
     };
     identify(&robot, &dataset, &settings(&robot).trimmed(1000.0), &|_| {})
 }

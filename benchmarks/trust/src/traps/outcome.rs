@@ -253,6 +253,7 @@ pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identificat
         validation: &[],
         true_values: Some(&subject.truth),
         variants: &subject.variants.lent(),
+        scales: Some(&subject.scales),
     };
     Ok(identify(
         subject.model(),

@@ -3,6 +3,7 @@
 
 mod clock;
 mod closure;
+mod consistency;
 mod course;
 mod delay;
 mod gains;
@@ -23,6 +24,7 @@ mod reversals;
 pub(super) mod smoothing;
 mod suspected;
 mod torque_faults;
+pub(crate) mod units;
 
 use overact::Model;
 
@@ -54,6 +56,8 @@ pub(crate) struct Context<'a> {
     pub(crate) watched: &'a [Watched],
     /// All estimates, each with the number of its projection.
     pub(crate) estimates: &'a [(usize, Estimate)],
+    /// The models of which no physically consistent parameters were found.
+    pub(crate) inconsistent: &'a [ModelKind],
     /// What the residual of the first base estimate says of faults that the model lacks.
     pub(crate) scores: Option<&'a Scores>,
     /// The same from half of the band, for what has to be told from errors of the positions.
@@ -102,8 +106,9 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 19] = [
+const CHECKS: [Function; 21] = [
     raw_numbers::check,
+    units::check,
     repeated::check,
     course::check,
     closure::check,
@@ -117,6 +122,7 @@ const CHECKS: [Function; 19] = [
     payload_labels::check,
     missing_parameters::check,
     negative_parameters::check,
+    consistency::check,
     relative_error::check,
     residual_correlation::check,
     regressor_errors::check,

@@ -70,7 +70,7 @@ fn told(negative: &[&ParameterEstimate]) -> String {
 }
 
 /// Whether a base parameter is a sum of things that can't be negative.
-fn is_positive(context: &Context<'_>, place: usize) -> bool {
+pub(super) fn is_positive(context: &Context<'_>, place: usize) -> bool {
     let columns = context.columns.as_slice();
     let positive = |column: usize| {
         let symbol = columns.get(column).map(|column| column.symbol);

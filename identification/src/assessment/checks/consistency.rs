@@ -1,0 +1,62 @@
+//! Whether bodies with positive masses and positive definite inertias explain the data.
+
+use super::{Context, negative_parameters::is_positive};
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    error::Error,
+    result::{Estimate, Stage},
+    significant,
+};
+
+/// Looks at the base parameters of the models without physically consistent parameters. Friction may be used all
+/// the same; masses, first moments and inertias may not.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let estimates = context.estimates_of(Stage::Base);
+    let without = estimates.filter(|one| context.inconsistent.contains(&one.model));
+    let of_model = |estimate: &Estimate| {
+        let inertial = estimate.parameters.iter();
+        let inertial = inertial.filter(|one| one.unit.starts_with("kg"));
+        Check::new(
+            CheckKind::Consistency,
+            About::Model,
+            words(context, estimate),
+        )
+        .of_model(estimate.model)
+        .allowing(Grade::UseListed)
+        .spoiling(inertial.map(|one| one.name.clone()).collect())
+    };
+    Ok(without.map(of_model).collect())
+}
+
+/// What fails, and a way out.
+fn words(context: &Context<'_>, estimate: &Estimate) -> String {
+    let negative = estimate
+        .parameters
+        .iter()
+        .filter(|one| one.value < 0.0 && is_positive(context, one.column));
+    let values: Vec<String> = negative
+        .map(|one| {
+            format!(
+                "`{}` = {} {}",
+                one.name,
+                significant(one.value, 3),
+                one.unit
+            )
+        })
+        .collect();
+    let fails = if values.is_empty() {
+        String::from(
+            "no single mass or moment of inertia is negative, but together they belong to no bodies",
+        )
+    } else {
+        format!("below zero: {}", values.join(", "))
+    };
+    let advice = if context.settings.prior.bounds.is_empty() {
+        "check signs and units of the log and whether the runs excite these parameters; values of the bodies in the table `prior` help the search"
+    } else {
+        "check the bounds in the table `prior`, then signs and units of the log"
+    };
+    format!(
+        "there are no physically consistent parameters, the search for them did not end; {fails}; {advice}"
+    )
+}

@@ -1,0 +1,279 @@
+//! Quantities of the raw numbers of a run: sampling, speeds, accelerations, travels, torques.
+
+use overact::Model;
+
+use super::Finding;
+use crate::{
+    called::called,
+    data::Scales,
+    monitor::Monitor,
+    units::{Kinds, Powers, Quantity, Range},
+};
+
+/// Speed of sound in air, m/s.
+const SOUND: f64 = 343.0;
+
+/// Largest acceleration of a tip, m/s²: 200 g, ten times that of the fastest Delta robots.
+const LARGEST_ACCELERATION: f64 = 2000.0;
+
+/// Below this acceleration of a tip (m/s²) and this sampling frequency (Hz) a run shows no inertia.
+const SMALLEST_ACCELERATION: f64 = 1e-3;
+const SLOW_SAMPLING: f64 = 20.0;
+
+/// Longest travel of a linear drive, m, and by the reach of the robot.
+const LONGEST_TRAVEL: f64 = 30.0;
+const LONGEST_BY_REACH: f64 = 100.0;
+
+/// A travel, or a torque, by the described one.
+const BY_DESCRIBED_TRAVEL: f64 = 30.0;
+const BY_DESCRIBED_TORQUE: f64 = 10.0;
+
+/// Where lengths are not described, a drive that turns moves a tip at this distance (m).
+const ARM: f64 = 0.3;
+
+/// The motion of a run.
+pub(super) struct RunMotion {
+    pub(super) name: String,
+    sampling: Vec<Quantity>,
+    drives: Vec<DriveMotion>,
+    pub(super) has_revolute: bool,
+    pub(super) has_prismatic: bool,
+    /// The longest travel of a linear drive, m.
+    pub(super) travel: f64,
+}
+
+/// The motion of a drive in a run.
+struct DriveMotion {
+    actuator: String,
+    is_revolute: bool,
+    /// Travel, speed and acceleration.
+    motion: Vec<Quantity>,
+    /// The largest torque by the described one.
+    torque: Option<Quantity>,
+}
+
+impl RunMotion {
+    pub(super) fn new(model: &dyn Model, scales: &Scales, name: &str, monitor: &Monitor) -> Self {
+        let info = model.info();
+        let frequency = monitor.frequency();
+        let (ranges, speeds) = (monitor.ranges(), monitor.usual_speeds());
+        let peaks = monitor.torque_peaks();
+        let drives = info.actuators.iter().enumerate().map(|(index, actuator)| {
+            let drive = Drive {
+                name: called(actuator),
+                is_revolute: info.actuator_is_revolute[index],
+                range: ranges[index],
+                speed: speeds[index],
+                frequency,
+            };
+            let torque = scales.torque.get(index).filter(|limit| **limit > 0.0);
+            let torque = torque.map(|limit| by_limit(&drive.name, peaks[index] / limit));
+            DriveMotion {
+                actuator: (*actuator).to_owned(),
+                is_revolute: drive.is_revolute,
+                motion: drive.quantities(scales, index),
+                torque: torque.filter(|one| one.value > 0.0),
+            }
+        });
+        let revolute = info.actuator_is_revolute;
+        let linear = ranges.iter().zip(revolute).filter(|(_, is)| !**is);
+        Self {
+            name: name.to_owned(),
+            sampling: sampling(frequency, scales),
+            drives: drives.collect(),
+            has_revolute: revolute.contains(&true),
+            has_prismatic: revolute.contains(&false),
+            travel: linear.fold(0.0, |most, (range, _)| most.max(*range)),
+        }
+    }
+
+    /// All quantities: those of the drives only for the drive that has most of it.
+    pub(super) fn quantities(&self) -> impl Iterator<Item = &Quantity> {
+        let count = self.drives.iter().map(|drive| drive.motion.len()).max();
+        let most = (0..count.unwrap_or(0)).filter_map(|place| {
+            let own = self
+                .drives
+                .iter()
+                .filter_map(move |drive| drive.motion.get(place));
+            own.max_by(|a, b| (a.value / a.usual.high).total_cmp(&(b.value / b.usual.high)))
+        });
+        let torques = self.drives.iter().filter_map(|drive| drive.torque.as_ref());
+        let torque = torques.max_by(|a, b| a.value.total_cmp(&b.value));
+        self.sampling.iter().chain(most).chain(torque)
+    }
+
+    /// Kinds of the drives.
+    pub(super) fn kinds(&self) -> Kinds {
+        Kinds {
+            revolute: self.has_revolute,
+            prismatic: self.has_prismatic,
+        }
+    }
+
+    /// Drives whose motion is impossible beside others whose motion is not, or whose torques are.
+    pub(super) fn single_drives(&self) -> Vec<Finding> {
+        let is_moving = |drive: &&DriveMotion| !drive.motion.is_empty();
+        let moving = self.drives.iter().filter(is_moving);
+        let contradicts = |all: &[Quantity]| all.iter().any(|one| !one.is_possible());
+        let (bad, good): (Vec<_>, Vec<_>) = moving.partition(|drive| contradicts(&drive.motion));
+        let mut found = Vec::new();
+        if !good.is_empty() {
+            found.extend(
+                bad.iter()
+                    .filter_map(|drive| self.of_drive(drive, &drive.motion)),
+            );
+        }
+        let torques = self.drives.iter().filter(|drive| drive.torque.is_some());
+        let is_bad = |drive: &&DriveMotion| {
+            let torque = drive.torque.as_ref();
+            torque.is_some_and(|torque| !torque.is_possible())
+        };
+        let (bad, good): (Vec<_>, Vec<_>) = torques.partition(is_bad);
+        if !good.is_empty() {
+            let own = |drive: &&DriveMotion| self.of_drive(drive, drive.torque.as_slice());
+            found.extend(bad.iter().filter_map(own));
+        }
+        found
+    }
+
+    /// What contradicts quantities of a drive.
+    fn of_drive(&self, drive: &DriveMotion, quantities: &[Quantity]) -> Option<Finding> {
+        let own = Self {
+            name: self.name.clone(),
+            sampling: Vec::new(),
+            drives: Vec::new(),
+            has_revolute: drive.is_revolute,
+            has_prismatic: !drive.is_revolute,
+            travel: 0.0,
+        };
+        Finding::of(&own, Some(&drive.actuator), quantities)
+    }
+}
+
+/// The sampling frequency, by itself and by that of the virtual experiment.
+fn sampling(frequency: f64, scales: &Scales) -> Vec<Quantity> {
+    let powers = Powers {
+        time: -1,
+        ..Powers::default()
+    };
+    let own = Quantity {
+        name: String::from("the sampling frequency"),
+        value: frequency,
+        unit: "Hz",
+        possible: Range::new(0.2, 5e6),
+        usual: Range::new(100.0, 2e4),
+        powers,
+    };
+    let described = scales.sampling.map(|described| Quantity {
+        name: String::from("the sampling frequency by that of [experiment]"),
+        value: frequency / described,
+        unit: "",
+        possible: Range::new(0.0, f64::INFINITY),
+        usual: Range::new(0.1, 10.0),
+        powers,
+    });
+    std::iter::once(own).chain(described).collect()
+}
+
+/// The largest torque of a drive by the described one.
+fn by_limit(drive: &str, ratio: f64) -> Quantity {
+    Quantity {
+        name: format!("the largest torque of {drive} by its `torque_limit`"),
+        value: ratio,
+        unit: "",
+        possible: Range::new(0.0, BY_DESCRIBED_TORQUE),
+        usual: Range::new(1e-3, 1.5),
+        powers: Powers {
+            torques: 1,
+            ..Powers::default()
+        },
+    }
+}
+
+/// Raw numbers of a drive in a run.
+struct Drive {
+    name: String,
+    is_revolute: bool,
+    /// Largest less smallest position, rad or m.
+    range: f64,
+    /// rad/s or m/s.
+    speed: f64,
+    /// Sampling frequency, Hz.
+    frequency: f64,
+}
+
+impl Drive {
+    /// Travel, speed and acceleration; none of a drive that rests.
+    fn quantities(&self, scales: &Scales, index: usize) -> Vec<Quantity> {
+        if !(self.range > 0.0 && self.speed > 0.0) {
+            return Vec::new();
+        }
+        let arm = if self.is_revolute {
+            scales.reach().unwrap_or(ARM)
+        } else {
+            1.0
+        };
+        let powers = |time| Powers {
+            time,
+            positions: 1,
+            torques: 0,
+        };
+        // Of a sine of amplitude R/2 and largest speed v, the largest acceleration is 2 v²/R.
+        let acceleration = 2.0 * self.speed.powi(2) / self.range * arm;
+        let least = if self.frequency < SLOW_SAMPLING {
+            SMALLEST_ACCELERATION
+        } else {
+            0.0
+        };
+        let speed = arm * self.speed;
+        vec![
+            self.travel(scales, index),
+            Quantity {
+                name: format!("the speed of the tip by {}", self.name),
+                value: speed,
+                unit: "m/s",
+                possible: Range::new(0.0, SOUND),
+                usual: Range::new(0.01, 20.0),
+                powers: powers(-1),
+            },
+            Quantity {
+                name: format!("the acceleration of the tip by {}", self.name),
+                value: acceleration,
+                unit: "m/s²",
+                possible: Range::new(least, LARGEST_ACCELERATION),
+                usual: Range::new(0.05, 300.0),
+                powers: powers(-2),
+            },
+        ]
+    }
+
+    /// By how much it moves.
+    fn travel(&self, scales: &Scales, index: usize) -> Quantity {
+        let described = scales.travel.get(index).map(|travel| 2.0 * travel);
+        let described = described.filter(|travel| *travel > 0.0);
+        let longest = if self.is_revolute {
+            f64::INFINITY
+        } else {
+            let reach = scales.reach().map(|reach| LONGEST_BY_REACH * reach);
+            reach.unwrap_or(LONGEST_TRAVEL)
+        };
+        let longest = described.map_or(longest, |own| longest.min(BY_DESCRIBED_TRAVEL * own));
+        let (unit, usual) = if self.is_revolute {
+            ("rad", Range::new(0.02, 7.0))
+        } else {
+            ("m", Range::new(0.002, 3.0))
+        };
+        let usual = described.map_or(usual, |own| Range::new(0.1 * own, 3.0 * own));
+        Quantity {
+            name: format!("the travel of {}", self.name),
+            value: self.range,
+            unit,
+            possible: Range::new(0.0, longest),
+            usual,
+            powers: Powers {
+                positions: 1,
+                ..Powers::default()
+            },
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Logs whose time, positions or torques are in another unit than the description says: the fit is as good as
+//! with the right one, only physical scales contradict it.
+
+use overact_identification::{Check, CheckKind, Grade, Identification, Log};
+use overact_robot::{Identifier, Robot};
+
+const ARM: &str = include_str!("../../cli/templates/serial-2r.toml");
+const AXIS: &str = include_str!("../../robots/emps.toml");
+
+/// The signals of a log.
+struct Signals {
+    frequency: f64,
+    positions: Vec<f64>,
+    torques: Vec<f64>,
+}
+
+/// What is identified with a description from runs of its virtual robot, with the signals changed.
+fn identified(description: &str, change: impl Fn(&mut Signals)) -> Identification {
+    let robot = Robot::from_text("robot.toml", description).expect("a description");
+    let mut experiment = robot.experiment().expect("an experiment");
+    for run in &mut experiment.plan_mut().runs {
+        run.duration_s = run.duration_s.map(|duration| duration.min(10.0));
+    }
+    let runs = experiment
+        .runs(&robot.held_out(), &|_, _| {})
+        .expect("runs");
+    let changed = |log: &Log| {
+        let (positions, torques) = log.load().expect("numbers");
+        let mut signals = Signals {
+            frequency: log.sampling_frequency(),
+            positions,
+            torques,
+        };
+        change(&mut signals);
+        let Signals {
+            frequency,
+            positions,
+            torques,
+        } = signals;
+        Log::new(
+            log.name(),
+            frequency,
+            log.actuators(),
+            positions,
+            torques,
+            false,
+        )
+        .expect("a log")
+    };
+    let logs: Vec<Log> = runs.identified.iter().map(changed).collect();
+    Identifier::new(&robot).runs(&logs).run().expect("a result")
+}
+
+/// The checks of units that found something.
+fn of_units(result: &Identification) -> Vec<&Check> {
+    let is_own = |one: &&Check| one.kind == CheckKind::Unit && !one.passed;
+    result.checks.iter().filter(is_own).collect()
+}
+
+/// Signal, factor and drive of the only check of units, of a result that may not be used.
+fn slip(result: &Identification) -> (&str, f64, Option<&str>) {
+    assert_eq!(result.grade(), Grade::DoNotUse);
+    let checks = of_units(result);
+    let [check] = checks[..] else {
+        panic!("one check of units: {checks:?}");
+    };
+    let first = &result.verdicts[0].reasons[0];
+    assert!(first.ends_with(&check.words), "{first}");
+    let (signal, factor) = (
+        check.signal.expect("a signal"),
+        check.factor.expect("a factor"),
+    );
+    (signal, factor, check.actuator.as_deref())
+}
+
+#[test]
+fn right_units_have_no_check_of_units() {
+    for description in [ARM, AXIS] {
+        assert!(of_units(&identified(description, |_| ())).is_empty());
+    }
+}
+
+#[test]
+fn time_in_milliseconds_microseconds_and_minutes_is_named() {
+    for factor in [1e3, 1e6, 1.0 / 60.0] {
+        let result = identified(ARM, |signals| signals.frequency /= factor);
+        assert_eq!(slip(&result), ("time", factor, None));
+    }
+}
+
+#[test]
+fn time_in_milliseconds_is_named_in_the_document() {
+    let result = identified(ARM, |signals| signals.frequency /= 1e3);
+    let document = serde_json::to_value(&result).expect("a document");
+    let checks = document["checks"].as_array().expect("checks");
+    let own = checks
+        .iter()
+        .find(|check| check["kind"] == "unit")
+        .expect("its check");
+    assert_eq!(own["signal"], "time");
+    assert_eq!(own["factor"], 1000.0);
+    assert_eq!(own["grade"], "no");
+}
+
+#[test]
+fn a_linear_axis_in_millimetres_is_named() {
+    let result = identified(AXIS, |signals| {
+        signals.positions.iter_mut().for_each(|q| *q *= 1e3);
+    });
+    assert_eq!(slip(&result), ("positions", 1e3, None));
+}
+
+#[test]
+fn angles_of_one_drive_in_milliradians_are_named_with_the_drive() {
+    let result = identified(ARM, |signals| {
+        signals
+            .positions
+            .iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|q| *q *= 1e3);
+    });
+    assert_eq!(slip(&result), ("positions", 1e3, Some("2")));
+}
+
+#[test]
+fn torques_in_mn_m_are_named_where_a_prior_contradicts_them() {
+    let prior = "\n[prior]\nzz_2 = 0.03\nmx_2 = 0.22\nia_2 = 0.02\nzz_1 = 0.08\nmx_1 = 0.45\nm_2 = \"1.8 kg\"\nia_1 = 0.05\n";
+    let with_prior = ARM.replacen("\n# Which columns", &format!("{prior}\n# Which columns"), 1);
+    assert_ne!(with_prior, ARM);
+    let result = identified(&with_prior, |signals| {
+        signals.torques.iter_mut().for_each(|torque| *torque *= 1e3);
+    });
+    assert_eq!(slip(&result), ("torques", 1e3, None));
+    // With right torques the prior contradicts nothing.
+    assert!(of_units(&identified(&with_prior, |_| ())).is_empty());
+}
+
+#[test]
+fn a_filter_above_the_sampling_frequency_asks_for_the_unit_of_time() {
+    let text = ARM.replacen(
+        "[identification]",
+        "[identification]\nfilter_cutoff = \"50 Hz\"",
+        1,
+    );
+    let robot = Robot::from_text("robot.toml", &text).expect("a description");
+    let runs = robot
+        .experiment()
+        .expect("an experiment")
+        .runs(&[], &|_, _| {})
+        .expect("runs");
+    let log = &runs.identified[0];
+    let (positions, torques) = log.load().expect("numbers");
+    let log = Log::new("slow", 1e-3, 2, positions, torques, false).expect("a log");
+    let error = Identifier::new(&robot)
+        .runs(&[log])
+        .run()
+        .expect_err("no filter");
+    let text = error.render(false);
+    assert!(text.contains("is the time in microseconds?"), "{text}");
+}
+
+#[test]
+fn units_are_among_the_assumptions() {
+    let result = identified(ARM, |_| ());
+    let assumed = |what: &str| result.assumptions.iter().any(|one| one.contains(what));
+    assert!(assumed("time is in seconds") && assumed("positions are in rad and m"));
+}
