@@ -16,6 +16,7 @@ fn mapping() -> Mapping {
         torque_gain: vec![Gain::Variable("gain".to_owned()), Gain::Value(1.0)],
         resample: None,
         transmission: Vec::new(),
+        rotating: Vec::new(),
     }
 }
 

@@ -188,6 +188,7 @@ fn mappings_are_checked() {
         torque_gain: vec![Gain::Value(f64::NAN)],
         resample: None,
         transmission: Vec::new(),
+        rotating: Vec::new(),
     };
     let error = read(Path::new("x.csv"), &mapping, false).expect_err("an error");
     assert_eq!(error.problems.len(), 4);

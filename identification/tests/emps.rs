@@ -21,6 +21,7 @@ fn log(file: &str) -> Option<Log> {
         torque_gain: vec![Gain::Variable(String::from("gtau"))],
         resample: None,
         transmission: Vec::new(),
+        rotating: Vec::new(),
     };
     Some(read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))
 }

@@ -134,6 +134,7 @@ fn mapping(time: &str, resample: Option<f64>, name: impl Fn(usize) -> [String; 2
         torque_gain: vec![Gain::Value(1.0); JOINTS],
         resample,
         transmission: Vec::new(),
+        rotating: Vec::new(),
     }
 }
 

@@ -48,6 +48,7 @@ fn a_large_file_stays_on_the_disk() {
         torque_gain: vec![Gain::Value(1.0)],
         resample: None,
         transmission: Vec::new(),
+        rotating: Vec::new(),
     };
     let log = read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}"));
     assert!(!log.in_memory());

@@ -41,8 +41,21 @@ impl Robot {
             torque_gain: data.torque_gain.iter().map(gain).collect(),
             resample: data.resample,
             transmission: data.transmission.clone(),
+            rotating: rotating(&data.transmission, self.model().info().actuator_is_revolute),
         }
     }
+}
+
+/// Whether each position of a log rotates: that of a joint, or that of a motor which turns rotating joints alone.
+fn rotating(transmission: &[Vec<f64>], joints: &[bool]) -> Vec<bool> {
+    if transmission.is_empty() {
+        return joints.to_vec();
+    }
+    let turns = |row: &Vec<f64>| {
+        let mut moved = row.iter().zip(joints).filter(|(factor, _)| **factor != 0.0);
+        moved.all(|(_, rotates)| *rotates)
+    };
+    transmission.iter().map(turns).collect()
 }
 
 /// The settings of a description for runs sampled at `frequency` (Hz).

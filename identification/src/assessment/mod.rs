@@ -7,6 +7,7 @@
 //! - `verdict`: what may be done with the estimates of a model;
 //! - `assumptions`: what no data can show;
 //! - `positions`: positions that contradict the loops, and what would make them close;
+//! - `rotation`: angles of many turns, of joints that rotate on or in degrees;
 //! - `torques`: torques that contradict the model, and which fault would explain them; `whole`: faults of whole runs;
 //! - `suspects`: what the model may lack, held against what it leaves unexplained;
 //! - `explained`: what may have led to an error.
@@ -17,6 +18,7 @@ pub(crate) mod checks;
 pub(crate) mod evidence;
 mod explained;
 mod positions;
+mod rotation;
 pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;

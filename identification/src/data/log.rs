@@ -35,6 +35,8 @@ pub struct Log {
     instruments: Option<Box<Log>>,
     /// What was done to the samples that a user should know.
     note: Option<String>,
+    /// Whether positions were logged within one turn and are unwrapped.
+    is_unwrapped: bool,
 }
 
 /// Where the numbers are.
@@ -103,6 +105,7 @@ impl Log {
             payload_name: None,
             instruments: None,
             note: None,
+            is_unwrapped: false,
         })
     }
 
@@ -189,7 +192,20 @@ impl Log {
             payload_name: None,
             instruments: None,
             note: None,
+            is_unwrapped: false,
         }
+    }
+
+    /// The same run with a word on whether positions were logged within one turn and are unwrapped.
+    pub(super) fn with_unwrapped(mut self, is_unwrapped: bool) -> Self {
+        self.is_unwrapped = is_unwrapped;
+        self
+    }
+
+    /// Whether positions were logged within one turn and are unwrapped.
+    #[must_use]
+    pub const fn is_unwrapped(&self) -> bool {
+        self.is_unwrapped
     }
 
     /// Name of the run: its file as the caller named it.

@@ -57,6 +57,10 @@ pub struct Mapping {
     /// their torques are τ = Tᵀ τ_θ at the joints. Empty where the columns are those of the actuated joints.
     #[serde(default)]
     pub transmission: Vec<Vec<f64>>,
+    /// Whether each position is that of a rotating joint or motor: where it was logged within one turn, it is
+    /// unwrapped. Empty where no position is to be unwrapped.
+    #[serde(default)]
+    pub rotating: Vec<bool>,
 }
 
 impl Mapping {
@@ -79,6 +83,7 @@ impl Mapping {
             torque_gain: vec![Gain::Value(1.0); info.actuators.len()],
             resample: None,
             transmission: Vec::new(),
+            rotating: info.actuator_is_revolute.to_vec(),
         }
     }
 

@@ -45,6 +45,7 @@ mod summary;
 mod table;
 mod text;
 mod transmission;
+mod turns;
 
 use std::{
     path::Path,
@@ -153,9 +154,18 @@ fn looked_through(
     payload: bool,
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
-    let summary = files.look_through(&mapping.time, advance)?;
+    let mut summary = files.look_through(&mapping.time, advance)?;
+    let wraps = std::mem::take(&mut summary.wraps);
+    if !wraps.is_empty() {
+        files.unwrap(&wraps)?;
+        summary = files.look_through(&mapping.time, &|_| {})?;
+    }
     let (frequency, count) = (summary.frequency, summary.count);
-    let note = files.note(count, summary.left_out);
+    let resampled = files.note(count, summary.left_out);
+    let notes: Vec<String> = { resampled.into_iter() }
+        .chain(wraps.iter().map(|(_, wrap)| wrap.note()))
+        .collect();
+    let note = (!notes.is_empty()).then(|| notes.join("; "));
     let log = match summary.samples {
         Some(samples) => {
             let (positions, torques) = (samples.positions, samples.torques);
@@ -170,6 +180,7 @@ fn looked_through(
     };
     Ok(log
         .with_note(note)
+        .with_unwrapped(!wraps.is_empty())
         .without_offsets(&mapping.position_offset))
 }
 

@@ -52,8 +52,11 @@ impl Files {
         if let Some(origin) = tables.iter().find_map(Table::origin) {
             tables.iter_mut().for_each(|table| table.set_origin(origin));
         }
+        let signals = Signals::new(&name, (&tables, &numbers), mapping)?;
         let mut files = Self {
-            signals: Signals::new(&name, (&tables, &numbers), mapping)?,
+            rotations: signals.rotations(&mapping.rotating),
+            rotating_values: signals.rotating_values(&mapping.rotating),
+            signals,
             name,
             tables,
             actuators: mapping.positions.len(),
@@ -272,6 +275,7 @@ mod tests {
             torque_gain: vec![Gain::Value(1.0)],
             resample: None,
             transmission: Vec::new(),
+            rotating: Vec::new(),
         };
         let file = (String::from("log.csv"), Medium::Disk(path.clone()));
         let files = Files::new(String::from("run"), &[file], &mapping).expect("files");

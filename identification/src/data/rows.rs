@@ -5,8 +5,8 @@ use super::{
     resampling::{Place, Resampled, apart},
     samples::Samples,
     signals::is_measurable,
-    source::Files,
-    table,
+    source::{Files, WrapSource},
+    turns::{UnwrappedRows, Unwrapper, Wrap},
 };
 use crate::error::{Error, Problem};
 use overact::Code;
@@ -14,7 +14,7 @@ use overact::Code;
 /// The rest of a file.
 #[derive(Debug)]
 struct Part<'a> {
-    rows: table::Rows<'a>,
+    rows: UnwrappedRows<'a>,
     /// The number of its columns that are read.
     columns: usize,
     /// The file at other times than its own.
@@ -52,7 +52,7 @@ impl<'a> Joined<'a> {
         let mut parts = Vec::new();
         for (table, own) in files.tables.iter().zip(files.signals.columns()) {
             parts.push(Part {
-                rows: table.rows(&own)?,
+                rows: UnwrappedRows::new(table.rows(&own)?, files.rotations_of(parts.len())),
                 columns: own.len(),
                 resampled: files.resampled(Some(parts.len())),
             });
@@ -134,7 +134,7 @@ impl<'a> Joined<'a> {
                 Ok(false) => ended = Some(number),
                 Err(error) => {
                     goes_on = Some(number);
-                    self.has_ended |= part.rows.is_broken() || part.resampled.is_some();
+                    self.has_ended |= part.rows.logged().is_broken() || part.resampled.is_some();
                     problems.extend(error.problems);
                     continue;
                 }
@@ -177,7 +177,7 @@ impl<'a> Joined<'a> {
                 Ok(Step::End)
             }
             Err(error) => {
-                self.has_ended |= rows.is_broken();
+                self.has_ended |= rows.logged().is_broken();
                 Err(error)
             }
         }
@@ -235,6 +235,8 @@ pub(super) struct Rows<'a> {
     times: Option<Uniform>,
     /// The numbers of a row, in the columns that are read.
     pub(super) values: Vec<f64>,
+    /// Unwraps positions that are no columns.
+    unwrapper: Unwrapper,
     /// Number of samples that have been read.
     pub(super) samples: usize,
     /// Samples of the first file at which another one, which is joined by time, has none.
@@ -253,6 +255,7 @@ impl<'a> Rows<'a> {
             resampled: files.resampled(None),
             times: None,
             values: vec![0.0; files.width()],
+            unwrapper: Unwrapper::new(files.rotating_values.clone()),
             samples: 0,
             left_out: 0,
         })
@@ -325,14 +328,16 @@ impl<'a> Rows<'a> {
     }
 
     /// Appends the numbers of a row to `samples`.
-    fn take(&self, samples: &mut Samples) -> Result<(), Error> {
+    fn take(&mut self, samples: &mut Samples) -> Result<(), Error> {
         let n = self.files.actuators;
         let values = self.files.signals.values(&self.values);
         let mut sound = true;
         let mut values = values.inspect(|value| sound &= is_measurable(*value));
+        let first = samples.positions.len();
         samples.positions.extend(values.by_ref().take(n));
         samples.torques.extend(values.by_ref().take(n));
         samples.velocities.extend(values);
+        self.unwrapper.take(&mut samples.positions[first..]);
         if let Some(transmission) = &self.files.transmission {
             transmission.to_joints(samples);
         }
@@ -361,6 +366,19 @@ impl<'a> Rows<'a> {
         .into())
     }
 
+    /// The columns and positions that were logged within one turn, of those that are not unwrapped.
+    pub(super) fn wraps(&self) -> Vec<(WrapSource, Wrap)> {
+        let parts = self.joined.parts.iter().enumerate();
+        let of_tables = parts.flat_map(|(table, part)| {
+            let own = part.rows.unwrapper.wraps().into_iter();
+            own.map(move |wrap| (WrapSource::Table(table), wrap))
+        });
+        let own = self.unwrapper.wraps().into_iter();
+        of_tables
+            .chain(own.map(|wrap| (WrapSource::Position, wrap)))
+            .collect()
+    }
+
     /// What is said at the end of files that have no time in common.
     pub(super) fn apart(&self) -> Option<Problem> {
         if self.samples > 0 {
@@ -387,13 +405,14 @@ impl<'a> Rows<'a> {
     /// Line of the last sample, where the run is one file that has lines.
     pub(super) fn line(&self) -> Option<usize> {
         match &self.joined.parts[..] {
-            [part] if self.files.resample.is_none() => part.rows.line(),
+            [part] if self.files.resample.is_none() => part.rows.logged().line(),
             _ => None,
         }
     }
 
     /// Bytes of all files that have been read.
     pub(super) fn bytes(&self) -> u64 {
-        self.joined.parts.iter().map(|part| part.rows.bytes()).sum()
+        let parts = self.joined.parts.iter();
+        parts.map(|part| part.rows.logged().bytes()).sum()
     }
 }

@@ -7,6 +7,7 @@ use super::{
     mapping::{Gain, Mapping, Time},
     problems::missing_columns,
     table::Table,
+    turns::{Position, Rotation},
 };
 use crate::error::{Error, Problem};
 use overact::Code;
@@ -21,6 +22,14 @@ struct Signal {
 }
 
 impl Signal {
+    const fn position(&self) -> Position<'_> {
+        Position {
+            text: self.text.as_str(),
+            expression: &self.expression,
+            scale: self.scale,
+        }
+    }
+
     fn value(&self, columns: &[f64]) -> f64 {
         self.expression.evaluate(columns) * self.scale
     }
@@ -113,6 +122,42 @@ impl Signals {
         };
         let clocks: Vec<_> = self.times.iter().filter_map(place).collect();
         if clocks.len() > 1 { clocks } else { Vec::new() }
+    }
+
+    /// The columns that may hold a position within one turn, where these positions are of rotating joints.
+    pub(super) fn rotations(&self, rotating: &[bool]) -> Vec<Rotation> {
+        let names: Vec<&str> = self
+            .columns
+            .iter()
+            .flatten()
+            .map(|(_, name)| name.as_str())
+            .collect();
+        let of = |is_rotating: bool| -> Vec<Rotation> {
+            let signals = self.signals.iter().zip(rotating);
+            let own = signals.filter(|(_, rotating)| **rotating == is_rotating);
+            own.flat_map(|(signal, _)| Rotation::of_columns(&signal.position(), &names))
+                .collect()
+        };
+        let sliding = of(false);
+        let mut all: Vec<Rotation> = Vec::new();
+        for one in of(true) {
+            let is_same = |other: &Rotation| other.column == one.column;
+            if let Some(known) = all.iter_mut().find(|other| is_same(other)) {
+                known.periods.extend(one.periods);
+            } else if !sliding.iter().any(is_same) {
+                all.push(one);
+            }
+        }
+        all
+    }
+
+    /// The positions of rotating joints that are no linear functions of their columns, by their places.
+    pub(super) fn rotating_values(&self, rotating: &[bool]) -> Vec<Rotation> {
+        let width = self.columns.iter().map(Vec::len).sum();
+        let own = self.signals.iter().zip(rotating).enumerate();
+        own.filter(|(_, (_, rotating))| **rotating)
+            .filter_map(|(place, (signal, _))| Rotation::of_value(&signal.position(), place, width))
+            .collect()
     }
 
     /// The first of the times.

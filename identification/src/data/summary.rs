@@ -6,9 +6,10 @@ use super::{
     problems::{Collected, LARGEST_NUMBER_OF_PROBLEMS},
     rows::Rows,
     samples::Samples,
-    source::Files,
+    source::{Files, WrapSource},
     spill::Spill,
     table::Table,
+    turns::Wrap,
 };
 use crate::error::{Error, Problem};
 use overact::Code;
@@ -33,6 +34,8 @@ pub(super) struct Summary {
     pub(super) spill: Option<Spill>,
     /// Samples of the first file at which another one, which is joined by time, has none.
     pub(super) left_out: usize,
+    /// Columns and positions that were logged within one turn and have not been unwrapped.
+    pub(super) wraps: Vec<(WrapSource, Wrap)>,
 }
 
 impl Files {
@@ -109,6 +112,7 @@ impl Files {
             samples: fits.then_some(samples),
             spill,
             left_out: rows.left_out,
+            wraps: rows.wraps(),
         })
     }
 

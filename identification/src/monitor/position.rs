@@ -13,6 +13,8 @@ pub(super) const SPEED_SAMPLES: usize = 10;
 pub(super) struct Position {
     pub(super) low: f64,
     pub(super) high: f64,
+    pub(super) first: f64,
+    pub(super) last: f64,
     /// Σ of the squares of steps between samples.
     pub(super) steps: f64,
     /// Sizes of steps and of their changes.
@@ -52,7 +54,9 @@ impl Position {
         let position = own[before];
         let known = before.min(SPEED_SAMPLES + 1);
         let back = |rows: usize| own[before - rows];
+        self.last = position;
         if known == 0 {
+            self.first = position;
             (self.low, self.high) = (position, position);
             return;
         }

@@ -147,6 +147,12 @@ impl Monitor {
             .collect()
     }
 
+    /// By how much each actuator ends away from where it began (m, rad).
+    pub(crate) fn travels(&self) -> Vec<f64> {
+        let travel = |one: &Position| (one.last - one.first).abs();
+        self.positions.iter().map(travel).collect()
+    }
+
     /// The least and the largest position of each actuator (m, rad).
     pub(crate) fn bounds(&self) -> Vec<(f64, f64)> {
         let positions = self.positions.iter();

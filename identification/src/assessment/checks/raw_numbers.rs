@@ -1,30 +1,26 @@
 //! Raw numbers that can't be right, as a monitor has watched them: clipped torques, stuck encoders, lost
 //! samples, a robot that stands still, degrees.
 
-use std::f64::consts::TAU;
-
 use overact::{Model, StandardParameter};
 
 use super::Context;
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
-        positions::Fault,
+        rotation,
     },
     error::Error,
     kinematics::conditioning::couples,
     monitor::{Monitor, Suspicion, Trouble},
 };
 
-/// Joints of serial robots do not turn farther than this (rad) from zero.
-const LARGEST_ANGLE: f64 = 2.0 * TAU;
-
 /// Looks at all runs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let of_run = |(log, watched): (&crate::data::Log, &super::Watched)| {
-        suspicious(context.model, log.name(), watched.monitor.clone())
+        suspicions(context.model, log.name(), watched.monitor.clone())
     };
     let mut checks: Vec<Check> = context.runs().flat_map(of_run).collect();
+    checks.extend(rotation::checks(context)?);
     let stands = |run: &crate::data::Log| {
         let mut own = checks
             .iter()
@@ -72,31 +68,19 @@ fn dry_friction(context: &Context<'_>) -> Vec<String> {
         .collect()
 }
 
-/// What is suspicious in the raw numbers of a run that a monitor has watched.
+/// What is suspicious in the raw numbers of a run that a monitor has watched, without what a fit tells.
 pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
-    let info = model.info();
-    let coupled = couples(model);
-    let revolute = monitor
-        .magnitudes()
-        .into_iter()
-        .zip(info.actuator_is_revolute);
-    let angles = revolute.filter(|(_, revolute)| **revolute);
-    let largest = angles.map(|(magnitude, _)| magnitude).fold(0.0, f64::max);
-    let suspicions = monitor.suspicions(info.actuators, coupled);
-    let mut checks: Vec<Check> = suspicions.into_iter().map(|one| told(run, one)).collect();
-    // With loops, the closure tells.
-    if !coupled && largest > LARGEST_ANGLE {
-        let so = format!(
-            "an angle of {largest:.0} rad would be {:.1} turns",
-            largest / TAU
-        );
-        let check = Fault::Degrees
-            .check(model, run, &so)
-            .measured(largest, "rad")
-            .against(LARGEST_ANGLE, "no joint of a serial robot turns farther");
-        checks.push(check);
-    }
+    let degrees =
+        rotation::degrees(model, run, &monitor).filter(|_| !rotation::rotates(model, &monitor));
+    let mut checks = suspicions(model, run, monitor);
+    checks.extend(degrees);
     checks
+}
+
+/// What is suspicious in the raw numbers of a run, beside angles of many turns.
+fn suspicions(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
+    let suspicions = monitor.suspicions(model.info().actuators, couples(model));
+    suspicions.into_iter().map(|one| told(run, one)).collect()
 }
 
 /// A suspicion as a check.

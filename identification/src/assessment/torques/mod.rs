@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::{
     check::{About, Check, CheckKind, Grade},
+    positions,
     whole::Whole,
 };
 use crate::{data::Log, error::Error, settings::Settings};
@@ -44,6 +45,26 @@ pub(crate) fn explanation(
     let before = doubt.error(None);
     let of_one = of_one(model, runs, &doubt, before);
     Ok(of_one.or_else(|| of_all((model, &columns), runs, settings, before)))
+}
+
+/// The part of the inputs that is left unexplained with the positions as they are, and after a fault of them is
+/// repaired; none where that leads out of the workspace or a log can't be read.
+pub(super) fn errors_with(
+    fault: positions::Fault,
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Option<(f64, f64)> {
+    let columns = Columns::new(model, settings).ok()?;
+    let repaired = runs
+        .iter()
+        .map(|log| Whole::Positions(fault).repaired(model, log));
+    let repaired: Vec<Log> = repaired.collect::<Result<_, _>>().ok()?;
+    let error = |runs: &[Log]| {
+        let doubt = columns.doubt((model, runs), settings, Way::TOGETHER);
+        Some(doubt.ok()?.error(None))
+    };
+    Some((error(runs)?, error(&repaired)?))
 }
 
 /// What speaks for a fault.

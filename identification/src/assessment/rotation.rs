@@ -1,0 +1,84 @@
+//! Angles of many turns: a joint that rotates continuously, or degrees that are read as radians.
+//!
+//! Where loops close, their closure tells. Else the torques are explained twice, with the angles as they are and as
+//! degrees: gravity and centrifugal torques go with one of them. Torques that both explain equally well leave the
+//! course of the motion, since a joint that rotates continuously does not come back.
+
+use std::f64::consts::TAU;
+
+use overact::Model;
+
+use super::{check::Check, checks::Context, positions::Fault, torques};
+use crate::{error::Error, kinematics::conditioning::couples, monitor::Monitor};
+
+/// Angles from which on the unit is asked for (rad).
+const LARGEST_ANGLE: f64 = 2.0 * TAU;
+
+/// A unit that leaves no more than this part of what the other leaves unexplained is right.
+const EXPLAINED: f64 = 0.5;
+
+/// A joint that ends this part of its range away from where it began rotates on.
+const ROTATES: f64 = 0.5;
+
+/// What says that angles are degrees, in all runs.
+///
+/// # Errors
+/// A log that can't be read any more.
+pub(super) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let model = context.model;
+    let runs = context.runs().filter(|(log, _)| !log.is_unwrapped());
+    let found = runs.filter_map(|(log, watched)| {
+        let check = degrees(model, log.name(), &watched.monitor)?;
+        Some((check, rotates(model, &watched.monitor)))
+    });
+    let found: Vec<(Check, bool)> = found.collect();
+    if found.is_empty() {
+        return Ok(Vec::new());
+    }
+    let errors = torques::errors_with(
+        Fault::Degrees,
+        model,
+        context.dataset.runs,
+        context.settings,
+    );
+    let (as_logged, as_degrees) = errors.unwrap_or((1.0, 1.0));
+    let are_radians = as_logged <= EXPLAINED * as_degrees;
+    let are_degrees = as_degrees <= EXPLAINED * as_logged;
+    let is_told = |rotates: bool| are_degrees || !(are_radians || rotates);
+    let told = found.into_iter().filter(|(_, rotates)| is_told(*rotates));
+    Ok(told.map(|(check, _)| check).collect())
+}
+
+/// That angles of a run are degrees, if they are large enough.
+pub(super) fn degrees(model: &dyn Model, run: &str, monitor: &Monitor) -> Option<Check> {
+    if couples(model) {
+        return None;
+    }
+    let revolute = model.info().actuator_is_revolute;
+    let angles = monitor.magnitudes().into_iter().zip(revolute);
+    let angles = angles.filter(|(_, revolute)| **revolute);
+    let largest = angles.map(|(angle, _)| angle).fold(0.0, f64::max);
+    let so = format!(
+        "an angle of {largest:.0} rad would be {:.1} turns",
+        largest / TAU
+    );
+    let check = || {
+        Fault::Degrees
+            .check(model, run, &so)
+            .measured(largest, "rad")
+            .against(
+                LARGEST_ANGLE,
+                "joints that turn farther rotate continuously",
+            )
+    };
+    (largest > LARGEST_ANGLE).then(check)
+}
+
+/// Whether every joint with large angles rotates on in one direction.
+pub(super) fn rotates(model: &dyn Model, monitor: &Monitor) -> bool {
+    let revolute = model.info().actuator_is_revolute.iter();
+    let ranges = monitor.ranges().into_iter().zip(monitor.travels());
+    let all = monitor.magnitudes().into_iter().zip(ranges).zip(revolute);
+    let mut large = all.filter(|((angle, _), revolute)| **revolute && *angle > LARGEST_ANGLE);
+    large.all(|((_, (range, travel)), _)| travel >= ROTATES * range)
+}

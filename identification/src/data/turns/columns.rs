@@ -1,0 +1,102 @@
+//! Which columns can hold a position within one turn, and the periods that are possible.
+
+use std::f64::consts::TAU;
+
+use super::Rotation;
+use crate::data::expression::Expression;
+
+/// Periods of counters, in counts: those of encoders and of registers of 8 to 32 bits.
+pub(super) const COUNTERS: [f64; 25] = {
+    let mut all = [0.0; 25];
+    let mut bits = 0;
+    while bits < all.len() {
+        all[bits] = (1_u64 << (bits + 8)) as f64;
+        bits += 1;
+    }
+    all
+};
+
+/// One turn in units of angles: radians, degrees, gons and turns.
+const UNITS: [f64; 4] = [TAU, 360.0, 400.0, 1.0];
+
+/// How much longer than the turn of the joint the turn of its motor may be.
+const ROUNDING: f64 = 1e-6;
+
+/// A position of a rotating joint, or of its motor, as a function of columns.
+pub(in crate::data) struct Position<'a> {
+    pub(in crate::data) text: &'a str,
+    pub(in crate::data) expression: &'a Expression,
+    /// The factor to rad.
+    pub(in crate::data) scale: f64,
+}
+
+impl Rotation {
+    /// The columns of which a position is a linear function, if it is one.
+    pub(in crate::data) fn of_columns(position: &Position<'_>, names: &[&str]) -> Vec<Self> {
+        let Some(slopes) = slopes(position.expression, names.len()) else {
+            return Vec::new();
+        };
+        let one = |(column, slope): (usize, f64)| Self {
+            column,
+            name: names[column].to_owned(),
+            periods: periods(TAU / (slope * position.scale).abs()),
+            period: None,
+        };
+        slopes.into_iter().map(one).collect()
+    }
+
+    /// A position that is another function of its columns, as an angle of atan2; by its place among all positions.
+    pub(in crate::data) fn of_value(
+        position: &Position<'_>,
+        place: usize,
+        width: usize,
+    ) -> Option<Self> {
+        slopes(position.expression, width).is_none().then(|| Self {
+            column: place,
+            name: position.text.to_owned(),
+            periods: vec![TAU * position.scale.abs(), TAU],
+            period: None,
+        })
+    }
+}
+
+/// The periods of a column in which the joint's turn has a length: that of the joint, and those of a motor before a
+/// gear.
+fn periods(joint: f64) -> Vec<f64> {
+    let units = UNITS.into_iter();
+    let motors = units.filter(|turn| *turn <= joint * (1.0 + ROUNDING));
+    let all = std::iter::once(joint).chain(motors).chain(COUNTERS);
+    all.filter(|period| period.is_finite() && *period > 0.0)
+        .collect()
+}
+
+/// The slope of a linear expression in each column that it depends on; none of other expressions.
+fn slopes(expression: &Expression, width: usize) -> Option<Vec<(usize, f64)>> {
+    if let Expression::Column(place) = expression {
+        return Some(vec![(*place, 1.0)]);
+    }
+    let at = |column: usize, value: f64| {
+        let mut row = vec![0.0; width];
+        row[column] = value;
+        expression.evaluate(&row)
+    };
+    let origin = expression.evaluate(&vec![0.0; width]);
+    let slopes = (0..width).map(|column| at(column, 1.0) - origin);
+    let slopes: Vec<f64> = slopes.collect();
+    // Points that no function but a linear one passes.
+    let is_linear = [0.7, -3.3, 41.0].into_iter().all(|factor| {
+        let row: Vec<f64> = (0..width)
+            .map(|column| factor * (1.0 + 0.61 * column as f64))
+            .collect();
+        let sum: f64 = row.iter().zip(&slopes).map(|(x, slope)| x * slope).sum();
+        let size = origin.abs()
+            + row
+                .iter()
+                .zip(&slopes)
+                .map(|(x, slope)| (x * slope).abs())
+                .sum::<f64>();
+        (expression.evaluate(&row) - origin - sum).abs() <= 1e-9 * size
+    });
+    let own = slopes.into_iter().enumerate();
+    is_linear.then(|| own.filter(|(_, slope)| *slope != 0.0).collect())
+}

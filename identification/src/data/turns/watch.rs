@@ -1,0 +1,191 @@
+//! Whether a column wraps: jumps of one period between samples that are smooth otherwise.
+
+use super::Rotation;
+use crate::{error::Problem, significant};
+use overact::Code;
+
+/// Part of a period by which the values of a wrapped column may exceed it: noise is added behind the wrap.
+const SLACK: f64 = 0.05;
+
+/// By how much steps may change at a wrap: this part of a period, ...
+const LARGEST_CHANGE: f64 = 0.1;
+
+/// ... so many times the mean change elsewhere, and so many of the smallest steps.
+const USUAL_CHANGES: f64 = 10.0;
+const RESOLUTIONS: f64 = 2.0;
+
+/// Steps of more than this part of a turn, after one of that part, may as well go the other way round.
+const AMBIGUOUS: f64 = 0.4;
+const BEFORE_AMBIGUOUS: f64 = 0.3;
+
+/// A column that wraps.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::data) struct Wrap {
+    pub(in crate::data) name: String,
+    /// The place of the column where it was watched.
+    pub(in crate::data) column: usize,
+    pub(in crate::data) period: f64,
+    /// How often it wraps.
+    count: usize,
+    /// The sample at which its direction is not known any more, and the step there in turns.
+    ambiguous: Option<(usize, f64)>,
+}
+
+impl Wrap {
+    /// What is done to the column, in words.
+    pub(in crate::data) fn note(&self) -> String {
+        format!(
+            "`{}` was logged within one turn and is unwrapped: it jumps by {} {} times",
+            self.name,
+            significant(self.period, 6),
+            self.count
+        )
+    }
+
+    /// What is wrong with a column of which the direction of a step is not known.
+    pub(in crate::data) fn problem(&self, file: &str) -> Option<Problem> {
+        let (sample, turns) = self.ambiguous?;
+        let message = format!(
+            "sample {sample}: `{}` was logged within one turn of {} and turns by {:.2} of it between two samples, so that its direction is not known",
+            self.name,
+            significant(self.period, 6),
+            turns.abs()
+        );
+        let problem = Problem::new(Code::LOG_COLUMNS, message)
+            .file(file)
+            .column(self.name.as_str());
+        Some(
+            problem.help(
+                "log more than three samples in each turn, or an angle that counts whole turns",
+            ),
+        )
+    }
+}
+
+/// Follows a column.
+#[derive(Debug)]
+pub(super) struct Watch {
+    samples: usize,
+    last: f64,
+    low: f64,
+    high: f64,
+    /// The smallest step that is not zero.
+    resolution: f64,
+    /// Whether all values are whole numbers, as those of counters.
+    is_whole: bool,
+    candidates: Vec<Candidate>,
+}
+
+/// What the column is like if this is its period.
+#[derive(Debug)]
+struct Candidate {
+    period: f64,
+    /// The step before.
+    step: Option<f64>,
+    wraps: Changes,
+    others: Changes,
+    ambiguous: Option<(usize, f64)>,
+}
+
+/// Changes of a step from one sample to the next.
+#[derive(Debug, Default)]
+struct Changes {
+    sum: f64,
+    count: usize,
+}
+
+impl Changes {
+    fn mean(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
+}
+
+impl Watch {
+    pub(super) fn new(periods: &[f64]) -> Self {
+        let candidate = |period: &f64| Candidate {
+            period: *period,
+            step: None,
+            wraps: Changes::default(),
+            others: Changes::default(),
+            ambiguous: None,
+        };
+        Self {
+            samples: 0,
+            last: 0.0,
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+            resolution: f64::INFINITY,
+            is_whole: true,
+            candidates: periods.iter().map(candidate).collect(),
+        }
+    }
+
+    /// Takes the next value.
+    pub(super) fn take(&mut self, value: f64) {
+        if self.samples > 0 {
+            let step = value - self.last;
+            if step != 0.0 {
+                self.resolution = self.resolution.min(step.abs());
+            }
+            for own in &mut self.candidates {
+                own.take(step, self.samples);
+            }
+        }
+        self.is_whole &= value.fract() == 0.0;
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
+        self.last = value;
+        self.samples += 1;
+    }
+
+    /// The period by which the column wraps, if it does: the one that makes it smoothest.
+    pub(super) fn wrap(&self, rotation: &Rotation) -> Option<Wrap> {
+        let range = self.high - self.low;
+        let fits = |own: &&Candidate| {
+            let usual = USUAL_CHANGES * own.others.mean() + RESOLUTIONS * self.resolution;
+            let most = (LARGEST_CHANGE * own.period).min(usual);
+            own.wraps.count > 0
+                && range <= (1.0 + SLACK) * own.period
+                && own.wraps.mean() <= most
+                && (self.is_whole || !columns_of_counters(own.period))
+        };
+        let fitting = self.candidates.iter().filter(fits);
+        let best = fitting.min_by(|a, b| a.wraps.mean().total_cmp(&b.wraps.mean()))?;
+        Some(Wrap {
+            name: rotation.name.clone(),
+            column: rotation.column,
+            period: best.period,
+            count: best.wraps.count,
+            ambiguous: best.ambiguous,
+        })
+    }
+}
+
+/// Whether a period is one of counters alone.
+fn columns_of_counters(period: f64) -> bool {
+    super::columns::COUNTERS.contains(&period)
+}
+
+impl Candidate {
+    /// Takes the next step, which leads to the sample of this number.
+    fn take(&mut self, logged: f64, sample: usize) {
+        let nearest = |step: f64| step - self.period * (step / self.period).round();
+        let step = nearest(logged);
+        let before = self.step.replace(step);
+        // Steps near half a turn change by little where they are taken for ones of the other direction.
+        let change = nearest(step - before.unwrap_or(step)).abs();
+        let changes = if logged.abs() > 0.5 * self.period {
+            &mut self.wraps
+        } else {
+            &mut self.others
+        };
+        changes.sum += change;
+        changes.count += 1;
+        let is_large = |step: f64, part: f64| step.abs() > part * self.period;
+        if is_large(step, AMBIGUOUS)
+            && before.is_some_and(|before| is_large(before, BEFORE_AMBIGUOUS))
+        {
+            self.ambiguous.get_or_insert((sample, step / self.period));
+        }
+    }
+}
