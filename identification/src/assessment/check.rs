@@ -213,6 +213,8 @@ pub enum CheckKind {
     HeldOut,
     /// Noise of the positions in the columns.
     RegressorErrors,
+    /// The runs do not tell columns apart: a coordinate hardly moves.
+    Excitation,
 }
 
 impl CheckKind {
@@ -250,6 +252,7 @@ impl CheckKind {
             Self::ResidualCorrelation => "residual correlation",
             Self::HeldOut => "held out",
             Self::RegressorErrors => "regressor errors",
+            Self::Excitation => "excitation",
         }
     }
 }

@@ -142,6 +142,8 @@ pub fn identify_after(
     };
     let scores = base.map(|base| scores_of(base, 1)).transpose()?;
     let narrow = || base.map(|base| scores_of(base, 2)).transpose();
+    let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
+    let ranges = prepared.ranges(model);
     let checks = assessment::checks(&Context {
         model,
         dataset,
@@ -156,6 +158,8 @@ pub fn identify_after(
         narrow: &narrow,
         cross_validation: &cross_validation,
         errors_in_regressor: &errors_in_regressor,
+        column_noise: &column_noise,
+        ranges: &ranges,
     })?;
     let failed = checks.iter().filter(|check| !check.passed);
     warnings.extend(failed.map(Check::located));

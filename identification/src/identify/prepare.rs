@@ -12,7 +12,10 @@ use crate::{
         periods::{Return, returns},
     },
     error::Error,
-    estimation::base::{BaseParameters, PayloadUse, base_parameters, payload_names},
+    estimation::{
+        base::{BaseParameters, PayloadUse, base_parameters, payload_names},
+        column_noise::ColumnNoise,
+    },
     gains::{Gains, drive_shares},
     gravity::GravityDirection,
     kinematics,
@@ -98,6 +101,48 @@ impl Prepared {
         };
         self.shares = Some(drive_shares(&observer, runs, gains)?);
         Ok(self)
+    }
+
+    /// What noise of the positions does to the columns of each projection.
+    ///
+    /// # Errors
+    /// A log that can't be read any more.
+    pub(super) fn column_noise(
+        &self,
+        model: &dyn Model,
+        runs: &[Log],
+        settings: &Settings,
+    ) -> Result<Vec<Option<ColumnNoise>>, Error> {
+        let observer = Observer {
+            model,
+            columns: &self.columns,
+            base: &self.base.columns,
+            projections: &self.projections,
+            settings,
+        };
+        ColumnNoise::all(&observer, runs)
+    }
+
+    /// The coordinates of the pose with the ranges in which the runs move them (m, rad); none of free rotation.
+    pub(super) fn ranges(&self, model: &dyn Model) -> Vec<(String, f64)> {
+        let sizes = model.info().sizes;
+        if sizes.pose != sizes.dof {
+            return Vec::new();
+        }
+        let runs = || self.seen.iter().map(|seen| &seen.figures);
+        let names = runs()
+            .next()
+            .map_or(Vec::new(), |run| run.coordinates.clone());
+        let range = |(place, name): (usize, String)| {
+            let all = runs().filter_map(|run| run.pose.get(place));
+            let bounds = all
+                .flatten()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (f64::min(low, *value), f64::max(high, *value))
+                });
+            (name, bounds.1 - bounds.0)
+        };
+        names.into_iter().enumerate().map(range).collect()
     }
 
     /// With the uncertainty of the direction of gravity that the model has.

@@ -6,6 +6,7 @@ mod closure;
 mod consistency;
 mod course;
 mod delay;
+mod excitation;
 mod gains;
 mod geometry;
 mod half_band;
@@ -35,7 +36,9 @@ use crate::{
     called::with_joints,
     data::{Dataset, Log},
     error::Error,
-    estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
+    estimation::{
+        base::BaseParameters, column_noise::ColumnNoise, instruments::regressor::ErrorsInRegressor,
+    },
     monitor::Monitor,
     regression::{columns::ColumnSet, projection::ModelKind, system::System},
     result::{CrossValidation, Estimate, Estimator, Stage},
@@ -66,6 +69,10 @@ pub(crate) struct Context<'a> {
     pub(crate) cross_validation: &'a [CrossValidation],
     /// For each model, the estimates by instruments beside those by least squares.
     pub(crate) errors_in_regressor: &'a [ErrorsInRegressor],
+    /// For each projection, what noise of the positions does to its columns.
+    pub(crate) column_noise: &'a [Option<ColumnNoise>],
+    /// The coordinates of the pose with the ranges in which the runs identified from move them (m, rad).
+    pub(crate) ranges: &'a [(String, f64)],
 }
 
 /// What has been watched of a run while it was gone through.
@@ -106,10 +113,11 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 21] = [
+const CHECKS: [Function; 22] = [
     raw_numbers::check,
     units::check,
     repeated::check,
+    excitation::check,
     course::check,
     closure::check,
     torque_faults::check,

@@ -38,7 +38,8 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
             source(told),
             significant(agreement.weakest, 3),
             agreement.weak_below,
-        ));
+        ))
+        .found();
     }
     let words = outcome(told, agreement) + &returning(&told.runs);
     let spoiled: Vec<String> = told
@@ -49,7 +50,12 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
         .collect();
     let check = check(words);
     if spoiled.is_empty() {
-        check
+        // Estimates that differ are worth a word, though no parameter is off by more than its deviation.
+        if agreement.differs {
+            check.found()
+        } else {
+            check
+        }
     } else {
         check.allowing(Grade::UseListed).spoiling(spoiled)
     }

@@ -11,7 +11,7 @@ use super::{
     scores::Scores,
     spread::{Freed, Share, Spread, score},
 };
-use crate::estimation::intervals::distributions::fisher_tail;
+use crate::estimation::intervals::distributions::Hotelling;
 
 impl Scores {
     /// Tests a group beside the columns `selected` of the base parameters; none where the data can't tell
@@ -92,13 +92,12 @@ impl Scores {
             freedom,
         } = freed.spread(shares, &self.means, &score)?;
         let count = width as f64;
-        let rest = freedom - count + 1.0;
-        if width == 0 || rest < 1.0 {
+        if width == 0 || freedom - count < 0.0 {
             return None;
         }
         let as_column = DMatrix::from_column_slice(width, 1, score.as_slice());
         let distance = Scaled::new(&covariance)?.solve(&as_column);
-        let statistic = rest / (freedom * count) * score.dot(&distance.column(0));
+        let test = Hotelling::new(score.dot(&distance.column(0)), count, freedom);
         // z⊥ is orthonormal: the scores are its sizes.
         let sizes = freed.white.tr_mul(&score);
         let first = freed.white.column(0);
@@ -109,7 +108,7 @@ impl Scores {
         Some(Accused {
             deviation: variance.max(0.0).sqrt(),
             freedom,
-            probability: fisher_tail(statistic, count, rest),
+            probability: test.probability,
             explained: score.norm_squared() / total.max(f64::MIN_POSITIVE),
             sizes: freed
                 .told

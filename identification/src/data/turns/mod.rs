@@ -28,7 +28,7 @@ pub(super) struct Rotation {
     pub(super) column: usize,
     /// As messages call it.
     pub(super) name: String,
-    /// The periods that are possible, in the unit of the column.
+    /// The periods that are possible, in the unit of the column; that of the joint first.
     pub(super) periods: Vec<f64>,
     /// The period by which it wraps, once that is known.
     pub(super) period: Option<f64>,

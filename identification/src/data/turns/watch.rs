@@ -1,6 +1,6 @@
 //! Whether a column wraps: jumps of one period between samples that are smooth otherwise.
 
-use super::Rotation;
+use super::{Rotation, columns::COUNTERS};
 use crate::{error::Problem, significant};
 use overact::Code;
 
@@ -80,6 +80,8 @@ pub(super) struct Watch {
 #[derive(Debug)]
 struct Candidate {
     period: f64,
+    /// Whether it is the turn of the joint, not that of a motor or a counter.
+    is_joint: bool,
     /// The step before.
     step: Option<f64>,
     wraps: Changes,
@@ -102,8 +104,9 @@ impl Changes {
 
 impl Watch {
     pub(super) fn new(periods: &[f64]) -> Self {
-        let candidate = |period: &f64| Candidate {
+        let candidate = |(place, period): (usize, &f64)| Candidate {
             period: *period,
+            is_joint: place == 0,
             step: None,
             wraps: Changes::default(),
             others: Changes::default(),
@@ -116,7 +119,7 @@ impl Watch {
             high: f64::NEG_INFINITY,
             resolution: f64::INFINITY,
             is_whole: true,
-            candidates: periods.iter().map(candidate).collect(),
+            candidates: periods.iter().enumerate().map(candidate).collect(),
         }
     }
 
@@ -147,7 +150,7 @@ impl Watch {
             own.wraps.count > 0
                 && range <= (1.0 + SLACK) * own.period
                 && own.wraps.mean() <= most
-                && (self.is_whole || !columns_of_counters(own.period))
+                && (self.is_whole || own.is_joint || !COUNTERS.contains(&own.period))
         };
         let fitting = self.candidates.iter().filter(fits);
         let best = fitting.min_by(|a, b| a.wraps.mean().total_cmp(&b.wraps.mean()))?;
@@ -159,11 +162,6 @@ impl Watch {
             ambiguous: best.ambiguous,
         })
     }
-}
-
-/// Whether a period is one of counters alone.
-fn columns_of_counters(period: f64) -> bool {
-    super::columns::COUNTERS.contains(&period)
 }
 
 impl Candidate {

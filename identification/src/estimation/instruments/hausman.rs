@@ -21,15 +21,16 @@ use crate::{
     estimation::{
         estimate::Estimation,
         intervals::{
-            distributions::{fisher_tail, student_tail},
+            distributions::{Hotelling, student_tail},
             scores::{Context, Covariance},
         },
     },
     regression::system::System,
 };
 
-/// The probability with which estimates that agree are called different.
-pub(crate) const LEVEL: f64 = 0.05;
+/// The probability with which estimates that agree are called different: what one of twelve families of checks has of
+/// false alarms in one of a hundred reports.
+pub(crate) const LEVEL: f64 = 0.01 / 12.0;
 
 /// Directions of V below this part of the largest, in units of deviations, do not count: there the
 /// estimates differ by a hundredth of what they may differ by otherwise, which tells nothing of errors.
@@ -85,7 +86,7 @@ impl Hausman {
             let scale = least_squares.standard_deviations[i];
             let noise = SMALLEST_DIFFERENCE * scale;
             let (d, freedom) = (differences[i], covariance.freedoms[i]);
-            let same = d.abs() <= noise || deviation == 0.0;
+            let same = d.abs() <= noise || (deviation == 0.0 && d.abs() <= scale);
             Difference {
                 difference: d,
                 deviation,
@@ -115,15 +116,18 @@ impl Hausman {
             };
         };
         let (square, rank) = distance(&parameters, &places, &covariance.matrix);
-        let rest = freedom - rank + 1.0;
         if rank > 0.5 * freedom {
             return Self::of_the_largest(parameters, &places, covariance);
         }
-        let statistic = rest / (freedom * rank) * square;
+        let Hotelling {
+            statistic,
+            rest,
+            probability,
+        } = Hotelling::new(square, rank, freedom);
         Self {
             statistic,
             freedoms: [rank, rest],
-            probability: fisher_tail(statistic, rank, rest),
+            probability,
             together: true,
             parameters,
         }

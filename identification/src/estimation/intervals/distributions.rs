@@ -39,9 +39,42 @@ pub fn student_tail(value: f64, freedom: f64) -> f64 {
     fisher_tail(value * value, 1.0, freedom)
 }
 
-/// The probability that a variable of Fisher's distribution exceeds `value`.
+/// Hotelling's test of a `distance` dᵀ V^-1 d in `rank` directions, where V has been estimated with `freedom` degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hotelling {
+    /// F.
+    pub(crate) statistic: f64,
+    /// Its second degrees of freedom.
+    pub(crate) rest: f64,
+    /// Of a larger F by chance.
+    pub(crate) probability: f64,
+}
+
+impl Hotelling {
+    pub(crate) fn new(distance: f64, rank: f64, freedom: f64) -> Self {
+        let rest = freedom - rank + 1.0;
+        // A covariance that is known has infinitely many degrees of freedom.
+        let part = if freedom.is_infinite() {
+            1.0
+        } else {
+            rest / freedom
+        };
+        let statistic = part / rank * distance;
+        Self {
+            statistic,
+            rest,
+            probability: fisher_tail(statistic, rank, rest),
+        }
+    }
+}
+
+/// The probability that a variable of Fisher's distribution exceeds `value`; zero of a value that is not a number, so
+/// that no test is passed that has no statistic.
 #[must_use]
 pub(crate) fn fisher_tail(value: f64, numerator: f64, denominator: f64) -> f64 {
+    if value.is_nan() || numerator.is_nan() || denominator.is_nan() {
+        return 0.0;
+    }
     let denominator = denominator.min(LARGEST_FREEDOM);
     if value <= 0.0 {
         return 1.0;
@@ -106,7 +139,26 @@ fn log_gamma(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{fisher_tail, log_gamma, student_quantile};
+    use super::{Hotelling, fisher_tail, log_gamma, student_quantile, student_tail};
+
+    #[test]
+    fn a_test_without_a_statistic_is_not_passed() {
+        assert_eq!(fisher_tail(f64::NAN, 2.0, 10.0), 0.0);
+        assert_eq!(fisher_tail(1.0, 2.0, f64::NAN), 0.0);
+        assert_eq!(student_tail(f64::NAN, 10.0), 0.0);
+        assert_eq!(fisher_tail(f64::INFINITY, 2.0, 10.0), 0.0);
+    }
+
+    #[test]
+    fn a_known_covariance_is_the_limit_of_many_degrees_of_freedom() {
+        let known = Hotelling::new(20.0, 9.0, f64::INFINITY);
+        let many = Hotelling::new(20.0, 9.0, 1e6);
+        assert!((known.statistic - 20.0 / 9.0).abs() < 1e-12);
+        assert!((known.probability - many.probability).abs() < 1e-5);
+        // 5 % point of chi-squared of 9 degrees of freedom.
+        let found = Hotelling::new(16.918_98, 9.0, f64::INFINITY).probability;
+        assert!((found - 0.05).abs() < 1e-5, "{found}");
+    }
 
     #[test]
     fn quantiles_are_those_of_the_tables() {

@@ -1,0 +1,154 @@
+//! Whether the runs move every coordinate: parameters whose columns only noise of the positions separates, and
+//! parameters that stand for sums on these runs.
+
+use super::Context;
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    error::Error,
+    estimation::column_noise::Directions,
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        system::System,
+    },
+    result::{Estimate, ParameterEstimate, Stage},
+    significant,
+};
+
+/// A direction of the columns of which noise is a larger part holds too little motion.
+const LARGEST_NOISE: f64 = 0.1;
+
+/// Part of a parameter's variance along such directions from which on it is not determined.
+const LARGEST_SHARE: f64 = 1e-3;
+
+/// Deviations by which noise of the positions may bias a parameter.
+const LARGEST_BIAS: f64 = 2.0;
+
+/// A coordinate that moves by less than this part of the one that moves most hardly moves.
+const HARDLY: f64 = 0.02;
+
+/// Looks at the base parameters of all models.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let base = context.estimates.iter();
+    let base = base.filter(|(_, one)| one.stage == Stage::Base);
+    Ok(base
+        .map(|(projection, estimate)| of_model(context, *projection, estimate))
+        .collect())
+}
+
+fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Check {
+    let new = |words: String| {
+        Check::new(CheckKind::Excitation, About::Data, words).of_model(estimate.model)
+    };
+    let Some(Ok(system)) = context.systems.get(projection) else {
+        return new(String::from("there are no equations"));
+    };
+    let mut spoiled = summed(system, estimate);
+    let noise = context.column_noise.get(projection);
+    let columns = estimate.columns();
+    let values: Vec<f64> = estimate.parameters.iter().map(|one| one.value).collect();
+    let directions = noise
+        .and_then(Option::as_ref)
+        .and_then(|noise| noise.directions(system, &estimate.weights, &columns, &values));
+    let Some(directions) = directions else {
+        let words = "whether the runs move every coordinate is not tested: the columns of the model have no value with noise in the positions";
+        return new(String::from(words)).found();
+    };
+    let largest = directions.noise.iter().copied().fold(0.0, f64::max);
+    for (place, own) in estimate.parameters.iter().enumerate() {
+        let is_lost = directions.is_undetermined(place) || directions.is_biased(place, own);
+        if is_lost && !spoiled.contains(&own.name) {
+            spoiled.push(own.name.clone());
+        }
+    }
+    let check = |words: String| {
+        new(words).measured(100.0 * largest, "% noise").against(
+            100.0 * LARGEST_NOISE,
+            "a tenth of what the torques say of a direction would be lost",
+        )
+    };
+    if spoiled.is_empty() {
+        return check(format!(
+            "the runs tell all columns apart: noise of the positions is at most {} % of what separates them",
+            significant(100.0 * largest, 2)
+        ));
+    }
+    let grade = if 2 * spoiled.len() > estimate.parameters.len() {
+        Grade::DoNotUse
+    } else {
+        Grade::UseListed
+    };
+    check(told(context, &spoiled))
+        .allowing(grade)
+        .spoiling(spoiled)
+}
+
+impl Directions {
+    /// Whether directions without motion are a part of the variance of the parameter at a place.
+    fn is_undetermined(&self, place: usize) -> bool {
+        let steps = self.steps.row(place);
+        let lost: f64 = { steps.iter().zip(&self.noise) }
+            .filter(|(_, noise)| **noise > LARGEST_NOISE)
+            .map(|(step, _)| step * step)
+            .sum();
+        lost > LARGEST_SHARE * steps.norm_squared()
+    }
+
+    /// Whether noise of the positions biases a parameter along the other directions.
+    fn is_biased(&self, place: usize, parameter: &ParameterEstimate) -> bool {
+        let steps = self.steps.row(place);
+        let all = steps.iter().zip(&self.noise).zip(self.sizes.iter());
+        let bias: f64 = all
+            .filter(|((_, noise), _)| **noise <= LARGEST_NOISE)
+            .map(|((step, noise), size)| step * size * noise / (1.0 - noise))
+            .sum();
+        bias.abs() > LARGEST_BIAS * parameter.correlated_standard_deviation
+    }
+}
+
+/// The estimated parameters that stand for sums: on these runs columns of others are combinations of theirs.
+fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
+    let ones = vec![1.0; system.lines.len()];
+    let all = Factor::merged(&system.lines, &ones);
+    let places: Vec<usize> = (0..all.parameters()).collect();
+    let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
+    let is_summed = |column: usize| {
+        let mut terms = found.dependent.iter().flat_map(|(_, terms)| terms);
+        terms.any(|(kept, _)| *kept == column)
+    };
+    let own = estimate.parameters.iter();
+    own.filter(|one| is_summed(one.column))
+        .map(|one| one.name.clone())
+        .collect()
+}
+
+/// What is told of parameters that the runs do not separate.
+fn told(context: &Context<'_>, spoiled: &[String]) -> String {
+    let names: Vec<String> = spoiled.iter().map(|name| format!("`{name}`")).collect();
+    let names = names.join(", ");
+    let still: Vec<String> = still(context)
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let moves = match &still[..] {
+        [] => String::from(
+            "record runs that move all coordinates independently, with larger velocities and accelerations: `overact excite` finds some",
+        ),
+        [one] => format!("{one} hardly moves: record runs in which it does"),
+        _ => format!(
+            "{} hardly move: record runs in which they do",
+            still.join(", ")
+        ),
+    };
+    format!(
+        "the runs do not determine {names}, whose columns differ by little more than noise of the positions; {moves}"
+    )
+}
+
+/// The coordinates that hardly move in the runs identified from: of the platform, or joints of a robot without loops.
+fn still(context: &Context<'_>) -> Vec<String> {
+    let ranges = context.ranges;
+    let largest = ranges.iter().map(|(_, range)| *range).fold(0.0, f64::max);
+    let hardly = ranges.iter().filter(|(_, range)| *range < HARDLY * largest);
+    hardly.map(|(name, _)| name.clone()).collect()
+}

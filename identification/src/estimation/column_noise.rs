@@ -1,0 +1,141 @@
+//! How noise of the positions changes the columns of the regressor.
+//!
+//! The columns come from measured positions q + δ, so a column holds W(q) and the change ΔW that the noise δ makes.
+//! The change is found by adding more noise of the same size to the beginning of some runs, which then pass filters,
+//! differences and forward kinematics as the measured positions do:
+//!
+//! ```text
+//! ΔW = W(q + δ') - W(q),   N = ΔWᵀ Λ² ΔW.
+//! ```
+//!
+//! With R of the weighted columns, the eigenvalues λ of R^-T N R^-1 say which part of a direction of W is noise
+//! (W. Fuller, *Measurement Error Models*, 1987): least squares lose the part λ of what the true motion says of it.
+//! A direction with λ near 1 holds no motion at all.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::position_noise::shaken;
+use crate::{
+    data::Log,
+    error::Error,
+    regression::{
+        factor::Factor,
+        observation::Observer,
+        system::{Observed, System},
+    },
+};
+
+/// Samples of a run that are looked at beyond those that the filters need.
+const SAMPLES: usize = 4096;
+
+/// Equations of each line that are made of them, at least, where the run has so many.
+const EQUATIONS: usize = 256;
+
+/// Runs that are looked at.
+const RUNS: usize = 4;
+
+/// R factors of ΔW of one projection.
+#[derive(Debug, Clone)]
+pub(crate) struct ColumnNoise {
+    lines: Vec<Factor>,
+}
+
+/// The directions of weighted columns, by how much of them is noise.
+#[derive(Debug, Clone)]
+pub(crate) struct Directions {
+    /// λ of each direction.
+    pub(crate) noise: Vec<f64>,
+    /// What a step of one deviation of the residual along each direction changes in each parameter: parameters x
+    /// directions.
+    pub(crate) steps: DMatrix<f64>,
+    /// The estimates along each direction, in the same unit.
+    pub(crate) sizes: DVector<f64>,
+}
+
+impl ColumnNoise {
+    /// Those of all projections of an observer; none of a projection without equations.
+    ///
+    /// # Errors
+    /// A log that can't be read any more.
+    pub(crate) fn all(observer: &Observer<'_>, runs: &[Log]) -> Result<Vec<Option<Self>>, Error> {
+        let parameters = observer.base.len();
+        let lines = observer.model.info().sizes.dof;
+        let mut all: Vec<Option<Self>> = observer.projections.iter().map(|_| None).collect();
+        let stride = runs.len().div_ceil(RUNS).max(1);
+        for (number, log) in runs.iter().enumerate().step_by(stride) {
+            let settings = observer.settings;
+            let used = SAMPLES.max(EQUATIONS * settings.decimation);
+            let piece = log.beginning(settings.samples_needed() + used)?;
+            let noisy = shaken(&piece)?;
+            // Noise that leads out of the workspace leaves this run out.
+            let both = (&piece, Some(&noisy));
+            let Ok((observed, _)) = observer.run(number, both, (0, None), &|_, _| {}) else {
+                continue;
+            };
+            for (own, observed) in all.iter_mut().zip(observed) {
+                let Ok(observed) = observed else { continue };
+                if observed.instruments.is_empty() {
+                    continue;
+                }
+                own.get_or_insert_with(|| Self {
+                    lines: vec![Factor::new(parameters); lines],
+                })
+                .add(&observed);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Adds the equations of a run.
+    fn add(&mut self, observed: &Observed) {
+        for (own, line) in self.lines.iter_mut().zip(&observed.instruments) {
+            let parameters = own.parameters();
+            let difference = DMatrix::from_fn(2 * parameters, parameters, |row, column| {
+                if row == column {
+                    -1.0
+                } else if row == column + parameters {
+                    1.0
+                } else {
+                    0.0
+                }
+            });
+            own.add(&line.combined(&difference));
+        }
+    }
+
+    /// The directions of the columns `selected` of a weighted system with their `values`; none of columns that are
+    /// dependent.
+    pub(crate) fn directions(
+        &self,
+        system: &System,
+        weights: &[f64],
+        selected: &[usize],
+        values: &[f64],
+    ) -> Option<Directions> {
+        let p = selected.len();
+        let triangle = Factor::reduced_together(&system.lines, weights, selected).triangle;
+        let inverse = triangle.solve_upper_triangular(&DMatrix::identity(p, p))?;
+        let size = self.lines.first()?.matrix().nrows();
+        let mut noise = DMatrix::zeros(size * self.lines.len(), p);
+        for (place, (own, all)) in self.lines.iter().zip(&system.lines).enumerate() {
+            let more = all.equations() as f64 / own.equations().max(1) as f64;
+            let scale = weights.get(place)? * more.sqrt();
+            for (to, from) in selected.iter().enumerate() {
+                let mut rows = noise.view_mut((place * size, to), (size, 1));
+                rows.copy_from(&(own.matrix().column(*from) * scale));
+            }
+        }
+        let decomposed = (noise * &inverse).try_svd(false, true, f64::EPSILON, 0)?;
+        let turned = decomposed.v_t?;
+        let sizes = &turned * (&triangle * DVector::from_column_slice(values));
+        Some(Directions {
+            noise: decomposed
+                .singular_values
+                .iter()
+                .map(|one| one * one)
+                .collect(),
+            steps: inverse * turned.transpose(),
+            sizes,
+        })
+    }
+}
