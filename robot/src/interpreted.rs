@@ -391,8 +391,11 @@ impl Model for InterpretedRobot {
                 return Err(Error::Length { expected, found });
             }
         }
-        let most = DOUBLE.largest.position;
-        guard::within(&[("actuators", actuators, most), ("start", pose, most)])?;
+        let largest = DOUBLE.largest;
+        guard::within(&[
+            ("actuators", actuators, largest.position),
+            ("start", pose, largest.pose),
+        ])?;
         if self.model.is_tree() {
             pose.copy_from_slice(actuators);
             return Ok(());

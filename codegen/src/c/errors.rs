@@ -149,7 +149,7 @@ pub fn singular_leg(model: &RobotModel, leg: &str) -> String {
 pub fn of_condition(model: &RobotModel, condition: &Condition) -> String {
     let leg = |leg: &str| leg_constant(model, leg);
     match condition {
-        Condition::Reach { leg: name } => format!("OUT_OF_REACH_{}", leg(name)),
+        Condition::Reach { leg: name, .. } => format!("OUT_OF_REACH_{}", leg(name)),
         Condition::Leg { leg: name, .. } => singular_leg(model, name),
         Condition::Closed { leg: name, .. } => format!("NOT_CLOSED_{}", leg(name)),
         Condition::Coordinates { .. } => "SINGULAR_COORDINATES".to_owned(),

@@ -100,6 +100,7 @@ impl<'a> Robot<'a> {
             kind: GuardKind::Reach(self.at_home(reach.radicand).abs()),
             leg: leg.clone(),
         });
+        let guards: Vec<_> = guards.collect();
         self.guards.extend(guards);
         Ok(())
     }
