@@ -195,7 +195,9 @@ impl InterpretedRobot {
             .get(failed.guard)
             .map(|guard| &guard.condition)
         {
-            Some(Condition::Reach { leg: name, .. }) if !(failed.value >= 0.0) => {
+            Some(Condition::Reach { leg: name, .. })
+                if failed.value.is_nan() || failed.value < 0.0 =>
+            {
                 Error::OutOfReach { leg: leg(name) }
             }
             Some(Condition::Reach { leg: name, home }) => Error::SingularLeg {
