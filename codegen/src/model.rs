@@ -61,7 +61,7 @@ impl CompiledFunction {
         };
         // What starts from this pose takes it as it is.
         let most = match self.computes {
-            Function::PoseInClosedForm => float.limits().largest.position,
+            Function::PoseInClosedForm => float.limits().largest.pose,
             _ => f64::INFINITY,
         };
         magnitudes.guard(&mut self.program, &bounds, most);

@@ -38,7 +38,9 @@ pub struct Limits {
 /// Largest magnitudes of a function's inputs, by quantity, in SI units. All are far above physical values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Largest {
-    /// Coordinates of poses, positions of joints and actuators (m, rad).
+    /// Coordinates of poses (m, rad).
+    pub pose: f64,
+    /// Positions of joints and actuators (m, rad), which may be angles of many turns.
     pub position: f64,
     /// Twists, rates of joints and actuators (m/s, rad/s).
     pub velocity: f64,
@@ -55,6 +57,7 @@ impl Largest {
     #[must_use]
     pub fn of(&self, array: &str) -> f64 {
         match array {
+            "pose" | "start" => self.pose,
             "twist" | "joint_velocities" | "actuator_velocities" => self.velocity,
             "acceleration" | "joint_accelerations" | "actuator_accelerations" => self.acceleration,
             "torques" | "preload" => self.force,
@@ -76,11 +79,12 @@ pub const DOUBLE: Limits = Limits {
     closed: 1e-10,
     partition: 1e9,
     largest: Largest {
-        position: 1e15,
-        velocity: 1e15,
-        acceleration: 1e15,
-        force: 1e15,
-        parameter: 1e15,
+        pose: 1e6,
+        position: 1e12,
+        velocity: 1e9,
+        acceleration: 1e12,
+        force: 1e12,
+        parameter: 1e12,
     },
 };
 
@@ -97,9 +101,10 @@ pub const SINGLE: Limits = Limits {
     closed: 3e-5,
     partition: 1e5,
     largest: Largest {
-        position: 1e4,
-        velocity: 1e6,
-        acceleration: 1e9,
+        pose: 1e3,
+        position: 1e5,
+        velocity: 1e5,
+        acceleration: 1e8,
         force: 1e9,
         parameter: 1e6,
     },

@@ -181,7 +181,7 @@ impl Form {
             .zip(inputs)
             .filter_map(|(own, values)| {
                 let most = DOUBLE.largest.of(&own.name);
-                let at = values.iter().position(|value| !(value.abs() <= most))?;
+                let at = (values.iter()).position(|value| value.is_nan() || value.abs() > most)?;
                 let is_row = values.len() == own.length;
                 let row = values.chunks(own.length).nth(at / own.length);
                 let input = known_name(&own.name);

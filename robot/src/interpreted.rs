@@ -195,7 +195,9 @@ impl InterpretedRobot {
             .get(failed.guard)
             .map(|guard| &guard.condition)
         {
-            Some(Condition::Reach { leg: name, .. }) if !(failed.value >= 0.0) => {
+            Some(Condition::Reach { leg: name, .. })
+                if failed.value.is_nan() || failed.value < 0.0 =>
+            {
                 Error::OutOfReach { leg: leg(name) }
             }
             Some(Condition::Reach { leg: name, home }) => Error::SingularLeg {
@@ -391,8 +393,11 @@ impl Model for InterpretedRobot {
                 return Err(Error::Length { expected, found });
             }
         }
-        let most = DOUBLE.largest.position;
-        guard::within(&[("actuators", actuators, most), ("start", pose, most)])?;
+        let largest = DOUBLE.largest;
+        guard::within(&[
+            ("actuators", actuators, largest.position),
+            ("start", pose, largest.pose),
+        ])?;
         if self.model.is_tree() {
             pose.copy_from_slice(actuators);
             return Ok(());

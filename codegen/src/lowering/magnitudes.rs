@@ -2,10 +2,12 @@
 //!
 //! Inputs are bounded by [`Largest`](overact_core::limits::Largest), and divisors from below by their guards. From these
 //! follows a bound of each value, as a power of two. It is rough: the bound of a sum is the sum of the bounds, whatever
-//! cancels. Where a bound is beyond the range of the numbers, a guard on the value's size is added, and the bound is that
-//! of the guard from there on. So no value of the program is infinite or NaN unless a guard fails.
+//! cancels. A value whose bound is beyond the range of the numbers may be infinite, and so may be what is computed from it.
+//! Guards on the sizes of some values see to it that no result is infinite or NaN, nor finite where a value on the way to
+//! it is not: they stand on a smallest set of values that every way from an overflow to a result meets ([`VertexCut`]).
 
 use super::program::{Condition, Guard, Operand, Operation, Program};
+use super::vertex_cut::VertexCut;
 use super::{Gathered, Lanes, LegRows, Sums};
 use crate::float::Float;
 use overact_core::Limits;
@@ -52,14 +54,7 @@ impl Magnitudes {
         inputs: &Bounds<'_>,
         most_of_entries: f64,
     ) -> Vec<f64> {
-        let mut walk = Walk {
-            magnitudes: *self,
-            program,
-            inputs,
-            upper: Vec::new(),
-            lower: Vec::new(),
-            guards: Vec::new(),
-        };
+        let mut walk = Walk::new(*self, program, inputs);
         walk.steps();
         let bounds = walk.entries(most_of_entries);
         let guards = walk.guards;
@@ -134,28 +129,94 @@ struct Walk<'w> {
     magnitudes: Magnitudes,
     program: &'w Program,
     inputs: &'w Bounds<'w>,
-    /// For each step the exponent that bounds it from above.
+    /// For each step the exponent to which its own guard bounds it.
+    guarded: Vec<Option<f64>>,
+    /// For each step the exponent that bounds it from above; infinite where it may be infinite or NaN.
     upper: Vec<f64>,
     /// For each step the exponent that bounds it from below, if it is bounded away from zero.
     lower: Vec<Option<f64>>,
     guards: Vec<Guard>,
 }
 
-impl Walk<'_> {
+impl<'w> Walk<'w> {
+    fn new(magnitudes: Magnitudes, program: &'w Program, inputs: &'w Bounds<'w>) -> Self {
+        Self {
+            magnitudes,
+            program,
+            inputs,
+            guarded: vec![None; program.steps.len()],
+            upper: Vec::new(),
+            lower: Vec::new(),
+            guards: Vec::new(),
+        }
+    }
+
+    /// Adds guards until no result may be infinite or NaN. Values that may be have guards where the fewest suffice; what
+    /// is computed from those is looked at again.
     fn steps(&mut self) {
+        loop {
+            let overflowing = self.bounds();
+            let guarded = self.cut(&overflowing);
+            if guarded.is_empty() {
+                return;
+            }
+            for step in guarded {
+                let bound = self.guard(Operand::Step(step), self.magnitudes.guarded);
+                self.guarded[step] = Some(bound);
+            }
+        }
+    }
+
+    /// Bounds of all steps, and those steps that may overflow though their operands are finite.
+    fn bounds(&mut self) -> Vec<usize> {
+        let mut overflowing = Vec::new();
+        self.upper.clear();
+        self.lower.clear();
         for at in 0..self.program.steps.len() {
             let operation = self.program.steps[at].operation;
-            let operand = Operand::Step(at);
+            let is_finite = carriers(operation).all(|a| self.upper(a) <= self.magnitudes.most);
             let mut upper = self.upper_of(operation);
-            // NaN: of an infinite and a vanishing bound.
-            if !(upper <= self.magnitudes.most) {
-                upper = self.guard(operand);
+            if let Some(guarded) = self.guarded[at] {
+                upper = guarded.min(upper);
+            } else if !is_finite {
+                upper = f64::INFINITY;
+            } else if upper > self.magnitudes.most {
+                upper = f64::INFINITY;
+                overflowing.push(at);
             }
             self.upper.push(upper);
-            let lower = self.guarded_from_below(operand);
+            let lower = self.guarded_from_below(Operand::Step(at));
             let lower = lower.or_else(|| self.lower_of(operation));
             let least = self.magnitudes.least;
             self.lower.push(lower.filter(|lower| *lower >= least));
+        }
+        overflowing
+    }
+
+    /// The smallest set of steps that is infinite or NaN wherever a result is that, or a value of which a finite number
+    /// is made: a divisor, a direction, a velocity whose sign is taken.
+    fn cut(&self, overflowing: &[usize]) -> Vec<usize> {
+        let mut cut = VertexCut::new(self.program.steps.len());
+        overflowing.iter().for_each(|&step| cut.source(step));
+        for (at, step) in self.program.steps.iter().enumerate() {
+            if self.upper[at] == f64::INFINITY {
+                let carriers = carriers(step.operation).filter_map(|a| self.unbounded(a));
+                carriers.for_each(|from| cut.edge(from, at));
+            }
+            let ends = ends(step.operation).filter_map(|a| self.unbounded(a));
+            ends.for_each(|end| cut.sink(end));
+        }
+        let results = self.program.entries.iter();
+        let results = results.filter_map(|entry| self.unbounded(entry.operand));
+        results.for_each(|result| cut.sink(result));
+        cut.smallest()
+    }
+
+    /// The step that an operand is, if it may be infinite or NaN.
+    fn unbounded(&self, operand: Operand) -> Option<usize> {
+        match operand {
+            Operand::Step(at) if self.upper[at] == f64::INFINITY => Some(at),
+            _ => None,
         }
     }
 
@@ -165,7 +226,7 @@ impl Walk<'_> {
         for entry in &self.program.entries {
             let mut bound = self.upper(entry.operand);
             if bound > most.log2() {
-                bound = self.guard_to(entry.operand, most.min(self.magnitudes.guarded));
+                bound = self.guard(entry.operand, most.min(self.magnitudes.guarded));
                 if let Operand::Step(at) = entry.operand {
                     self.upper[at] = bound;
                 }
@@ -176,11 +237,7 @@ impl Walk<'_> {
     }
 
     /// Bounds a value by a guard; its exponent.
-    fn guard(&mut self, operand: Operand) -> f64 {
-        self.guard_to(operand, self.magnitudes.guarded)
-    }
-
-    fn guard_to(&mut self, operand: Operand, most: f64) -> f64 {
+    fn guard(&mut self, operand: Operand, most: f64) -> f64 {
         self.guards.push(Guard {
             operand,
             condition: Condition::Size { most },
@@ -248,10 +305,36 @@ impl Walk<'_> {
     }
 }
 
+/// Operands of which a result is infinite or NaN if one of them is.
+fn carriers(operation: Operation) -> impl Iterator<Item = Operand> {
+    let (first, second) = match operation {
+        Operation::Add(a, b) | Operation::Sub(a, b) | Operation::Mul(a, b) => (Some(a), Some(b)),
+        Operation::Div(a, _)
+        | Operation::Signed(a, _)
+        | Operation::Neg(a)
+        | Operation::Sqrt(a)
+        | Operation::Sine(a)
+        | Operation::Cosine(a) => (Some(a), None),
+        Operation::Sign(_) | Operation::Atan2(..) => (None, None),
+    };
+    first.into_iter().chain(second)
+}
+
+/// Operands of which a result may be finite though they are not.
+fn ends(operation: Operation) -> impl Iterator<Item = Operand> {
+    let (first, second) = match operation {
+        Operation::Div(_, b) | Operation::Signed(_, b) => (Some(b), None),
+        Operation::Sign(a) => (Some(a), None),
+        Operation::Atan2(a, b) => (Some(a), Some(b)),
+        _ => (None, None),
+    };
+    first.into_iter().chain(second)
+}
+
 /// The exponent of a sum of magnitudes.
 fn sum(a: f64, b: f64) -> f64 {
     let (larger, smaller) = (a.max(b), a.min(b));
-    if smaller == f64::NEG_INFINITY {
+    if smaller == f64::NEG_INFINITY || larger == f64::INFINITY {
         return larger;
     }
     larger + (smaller - larger).exp2().ln_1p() / std::f64::consts::LN_2
@@ -315,9 +398,25 @@ mod tests {
         assert_eq!(guarded(Float::F64, program(&squares(6), Vec::new())), []);
         let found = guarded(Float::F64, program(&squares(7), Vec::new()));
         assert_eq!(found, [Operand::Step(6)]);
-        // 1e48 is guarded to 1e12, whose square is 1e24.
+        // 1e48 would overflow, and so would what is computed from it.
         let found = guarded(Float::F32, program(&squares(5), Vec::new()));
-        assert_eq!(found, [Operand::Step(3)]);
+        assert_eq!(found, [Operand::Step(4)]);
+    }
+
+    #[test]
+    fn a_divisor_that_may_be_infinite_is_guarded() {
+        let mut operations = squares(7);
+        operations.push(Operation::Div(X, Operand::Step(6)));
+        operations.push(Operation::Atan2(Operand::Step(7), Y));
+        let leg = Guard {
+            operand: Operand::Step(6),
+            condition: Condition::Leg {
+                leg: String::new(),
+                home: 1.0,
+            },
+        };
+        let found = guarded(Float::F64, program(&operations, vec![leg]));
+        assert_eq!(found, [Operand::Step(6)]);
     }
 
     #[test]

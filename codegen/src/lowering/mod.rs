@@ -29,6 +29,7 @@ mod program;
 mod schedule;
 #[cfg(test)]
 mod tests;
+mod vertex_cut;
 
 pub use dag::test_states::States;
 pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, OfLegs, Pays, Sums};
