@@ -5,7 +5,7 @@ use crate::{
     note::is_quiet,
     output::{self, check, emit, print},
 };
-use overact_description::diagnostic::visible;
+use overact_codegen::diagnostic::visible;
 use overact_interchange::{Account, Entry, Imported, Options};
 use overact_robot::import;
 use serde::Serialize;
