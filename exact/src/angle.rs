@@ -30,12 +30,14 @@ impl Angle {
 
     /// A fraction of degrees; `None` on overflow.
     #[must_use]
+    #[inline]
     pub fn degrees(degrees: Ratio) -> Option<Self> {
         Some(Self::half_turns(degrees.times(Ratio::new(1, 180)?)?))
     }
 
     /// A fraction of radians.
     #[must_use]
+    #[inline]
     pub const fn radians(radians: Ratio) -> Self {
         Self {
             half_turns: Ratio::ZERO,
@@ -45,12 +47,14 @@ impl Angle {
 
     /// The angle in radians.
     #[must_use]
+    #[inline]
     pub fn value(self) -> f64 {
         PI * self.half_turns.value() + self.radians.value()
     }
 
     /// Sum; `None` on overflow.
     #[must_use]
+    #[inline]
     pub fn plus(self, other: Self) -> Option<Self> {
         Some(Self {
             half_turns: self.half_turns.plus(other.half_turns)?,
@@ -60,6 +64,7 @@ impl Angle {
 
     /// The angle times a fraction; `None` on overflow.
     #[must_use]
+    #[inline]
     pub fn times(self, factor: Ratio) -> Option<Self> {
         Some(Self {
             half_turns: self.half_turns.times(factor)?,
@@ -69,6 +74,7 @@ impl Angle {
 
     /// The angle with the opposite sign.
     #[must_use]
+    #[inline]
     pub const fn negative(self) -> Self {
         Self {
             half_turns: self.half_turns.negative(),
@@ -78,18 +84,21 @@ impl Angle {
 
     /// Whether the angle is zero.
     #[must_use]
+    #[inline]
     pub const fn is_zero(self) -> bool {
         self.half_turns.is_zero() && self.radians.is_zero()
     }
 
     /// The multiple of π and the fraction of a radian.
     #[must_use]
+    #[inline]
     pub const fn parts(self) -> (Ratio, Ratio) {
         (self.half_turns, self.radians)
     }
 
     /// Cosine and sine, exact in the field.
     #[must_use]
+    #[inline]
     pub fn cosine_and_sine(self) -> (Number, Number) {
         let (sine, cosine) = self.value().sin_cos();
         let image = self.circle_point();
@@ -110,6 +119,7 @@ impl Angle {
 }
 
 /// A constant whose image is zero is zero, whatever the rounding of the float says.
+#[inline]
 fn exact(value: f64, image: Element) -> Number {
     if image == Element::ZERO {
         Number::ZERO
@@ -118,12 +128,14 @@ fn exact(value: f64, image: Element) -> Number {
     }
 }
 
+#[inline]
 fn hash(ratio: Ratio) -> u64 {
     mix(ratio.numerator() as u64 ^ mix(ratio.denominator() as u64))
 }
 
 /// The point of a nanoradian, free but fixed, to the power of the nanoradians; so decimal radians
 /// add up exactly. A fraction that is no multiple of a nanoradian gets a point of its own.
+#[inline]
 fn radian_point(radians: Ratio) -> Element {
     const UNIT: i128 = 1_000_000_000;
     if radians.is_zero() {

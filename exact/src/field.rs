@@ -35,11 +35,13 @@ pub struct Element {
     im: u64,
 }
 
+#[inline]
 fn add(a: u64, b: u64) -> u64 {
     let sum = a + b;
     if sum >= P { sum - P } else { sum }
 }
 
+#[inline]
 fn sub(a: u64, b: u64) -> u64 {
     if a >= b { a - b } else { a + P - b }
 }
@@ -98,6 +100,7 @@ impl Element {
 
     /// The image of an integer.
     #[must_use]
+    #[inline]
     pub fn integer(value: i128) -> Self {
         // Small ones stand for themselves. A Euclidean remainder is never negative and below P.
         let re = match u64::try_from(value) {
@@ -109,6 +112,7 @@ impl Element {
 
     /// A base-field element from any 64 bits.
     #[must_use]
+    #[inline]
     pub fn from_bits(bits: u64) -> Self {
         Self {
             re: bits % P,
@@ -118,6 +122,7 @@ impl Element {
 
     /// The element with its real and imaginary parts modulo P.
     #[must_use]
+    #[inline]
     pub fn from_parts(re: u64, im: u64) -> Self {
         Self {
             re: re % P,
@@ -127,6 +132,7 @@ impl Element {
 
     /// Real and imaginary part.
     #[must_use]
+    #[inline]
     pub fn parts(self) -> (u64, u64) {
         (self.re, self.im)
     }
@@ -191,6 +197,7 @@ impl Element {
 
     /// Cosine and sine of the angle that a point of the circle stands for.
     #[must_use]
+    #[inline]
     pub fn cosine_and_sine(self) -> (Self, Self) {
         (Self { re: self.re, im: 0 }, Self { re: self.im, im: 0 })
     }
@@ -244,12 +251,14 @@ impl Element {
 impl Element {
     /// A linear image of the element in the base field.
     #[must_use]
+    #[inline]
     pub fn projection(self) -> u64 {
         add(self.re, mul(self.im, PROJECTION))
     }
 
     /// The projection of the difference of two elements by theirs, or of the sum for a `negative` second.
     #[must_use]
+    #[inline]
     pub fn projected_difference(first: u64, second: u64, negative: bool) -> u64 {
         if negative {
             add(first, second)
@@ -308,6 +317,7 @@ impl Logarithms {
 
     /// The logarithm of an element and of its negative; `None` for zero.
     #[must_use]
+    #[inline]
     pub fn of(&self, element: Element) -> Option<u32> {
         let norm = add(mul(element.re, element.re), mul(element.im, element.im));
         let mut root = power(norm, COFACTOR);
@@ -323,6 +333,7 @@ impl Logarithms {
 
 impl Add for Element {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self {
             re: add(self.re, other.re),
@@ -333,6 +344,7 @@ impl Add for Element {
 
 impl Sub for Element {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self {
             re: sub(self.re, other.re),
@@ -343,6 +355,7 @@ impl Sub for Element {
 
 impl Neg for Element {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self {
             re: sub(0, self.re),
@@ -371,6 +384,7 @@ impl Mul for Element {
 /// The smaller of a value and its negative, and whether it is the negative; of the values at several
 /// points, which change their signs together, the first ones decide.
 #[must_use]
+#[inline]
 pub fn canonical<const POINTS: usize>(value: [Element; POINTS]) -> ([Element; POINTS], bool) {
     let negative = value.map(|element| -element);
     if negative < value {
@@ -382,6 +396,7 @@ pub fn canonical<const POINTS: usize>(value: [Element; POINTS]) -> ([Element; PO
 
 /// Sixty-four well-mixed bits from a seed (SplitMix64's finaliser), the source of all random points.
 #[must_use]
+#[inline]
 pub fn mix(seed: u64) -> u64 {
     let mut z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -391,6 +406,7 @@ pub fn mix(seed: u64) -> u64 {
 
 /// Bits from a name (FNV-1a, mixed), the same on every machine.
 #[must_use]
+#[inline]
 pub fn mix_name(name: &str) -> u64 {
     let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
         (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)

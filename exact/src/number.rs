@@ -33,12 +33,14 @@ impl Number {
 
     /// An integer.
     #[must_use]
+    #[inline]
     pub fn integer(value: i64) -> Self {
         Self::ratio(Ratio::integer(value))
     }
 
     /// A fraction.
     #[must_use]
+    #[inline]
     pub fn ratio(ratio: Ratio) -> Self {
         let mut image = Element::integer(ratio.numerator());
         if ratio.denominator() != 1 {
@@ -53,6 +55,7 @@ impl Number {
 
     /// A float of unknown origin; its image is random but the same for equal floats.
     #[must_use]
+    #[inline]
     pub fn float(value: f64) -> Self {
         if value.fract() == 0.0 && value.abs() < 9e15 {
             return Self::integer(value as i64);
@@ -66,6 +69,7 @@ impl Number {
 
     /// A float whose image is known, for instance the cosine of an exact angle.
     #[must_use]
+    #[inline]
     pub fn known(value: f64, image: Element) -> Self {
         match image.to_rational() {
             Some((n, d)) if close(n as f64 / d as f64, value) => Ratio::new(n.into(), d.into())
@@ -87,30 +91,35 @@ impl Number {
 
     /// The float.
     #[must_use]
+    #[inline]
     pub fn value(self) -> f64 {
         self.value
     }
 
     /// The element of the field.
     #[must_use]
+    #[inline]
     pub fn image(self) -> Element {
         self.image
     }
 
     /// The fraction, where the constant is one.
     #[must_use]
+    #[inline]
     pub fn as_ratio(self) -> Option<Ratio> {
         self.ratio
     }
 
     /// Whether the constant is zero.
     #[must_use]
+    #[inline]
     pub fn is_zero(self) -> bool {
         self.image == Element::ZERO
     }
 
     /// Whether the constant is one.
     #[must_use]
+    #[inline]
     pub fn is_one(self) -> bool {
         self.image == Element::ONE
     }
@@ -134,6 +143,7 @@ impl Number {
 
 /// The root of a fraction as the product of the roots of its primes, so that √2 √3 is √6. The roots
 /// of 2, 3 and 5 are those that the circle's own points imply (√3 = 2 cos 30 deg).
+#[inline]
 fn root_of_ratio(ratio: Ratio, value: f64) -> Number {
     let square_free = match ratio.numerator().checked_mul(ratio.denominator()) {
         Some(n) if n < 1 << 40 => n,
@@ -166,6 +176,7 @@ fn root_of_ratio(ratio: Ratio, value: f64) -> Number {
     }
 }
 
+#[inline]
 fn root_of_prime(prime: i128) -> Element {
     let twice_cosine = |n, d| Element::half_turns(n, d).map(|(c, _)| c + c);
     let root = match prime {
@@ -177,11 +188,13 @@ fn root_of_prime(prime: i128) -> Element {
     root.unwrap_or_else(|| Element::from_bits(mix(prime as u64)))
 }
 
+#[inline]
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * (1.0 + a.abs())
 }
 
 /// Combines two numbers: exactly as fractions if both are, else by value and image.
+#[inline]
 fn combine(ratio: Option<Ratio>, value: f64, image: Element) -> Number {
     if let Some(ratio) = ratio {
         return Number {
@@ -198,6 +211,7 @@ fn combine(ratio: Option<Ratio>, value: f64, image: Element) -> Number {
 
 impl Add for Number {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         let ratio = self.ratio.zip(other.ratio).and_then(|(a, b)| a.plus(b));
         combine(ratio, self.value + other.value, self.image + other.image)
@@ -206,6 +220,7 @@ impl Add for Number {
 
 impl Sub for Number {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -213,6 +228,7 @@ impl Sub for Number {
 
 impl Mul for Number {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let ratio = self.ratio.zip(other.ratio).and_then(|(a, b)| a.times(b));
         combine(ratio, self.value * other.value, self.image * other.image)
@@ -222,6 +238,7 @@ impl Mul for Number {
 impl Div for Number {
     type Output = Self;
     /// The quotient; the caller sees to it that the divisor is not zero.
+    #[inline]
     fn div(self, other: Self) -> Self {
         let ratio = self
             .ratio
@@ -237,6 +254,7 @@ impl Div for Number {
 
 impl Neg for Number {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self {
             value: -self.value,
@@ -247,6 +265,7 @@ impl Neg for Number {
 }
 
 impl PartialEq for Number {
+    #[inline]
     fn eq(&self, other: &Self) -> bool {
         self.image == other.image && close(self.value, other.value)
     }

@@ -10,6 +10,7 @@ pub struct Ratio {
     denominator: i128,
 }
 
+#[inline]
 fn gcd(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.unsigned_abs(), b.unsigned_abs());
     // Nearly all parts have 64 bits, whose remainders are instructions and not calls.
@@ -59,6 +60,7 @@ impl Ratio {
 
     /// An integer.
     #[must_use]
+    #[inline]
     pub const fn integer(value: i64) -> Self {
         Self {
             numerator: value as i128,
@@ -68,6 +70,7 @@ impl Ratio {
 
     /// A decimal number such as `-0.41`, `15.52` or `1e-3`; `None` if it is none or too long.
     #[must_use]
+    #[inline]
     pub fn decimal(text: &str) -> Option<Self> {
         let text = text.replace('_', "");
         let (mantissa, exponent) = match text.find(['e', 'E']) {
@@ -87,24 +90,28 @@ impl Ratio {
 
     /// Numerator, with the sign.
     #[must_use]
+    #[inline]
     pub const fn numerator(self) -> i128 {
         self.numerator
     }
 
     /// Denominator, positive.
     #[must_use]
+    #[inline]
     pub const fn denominator(self) -> i128 {
         self.denominator
     }
 
     /// Whether it is 0.
     #[must_use]
+    #[inline]
     pub const fn is_zero(self) -> bool {
         self.numerator == 0
     }
 
     /// The nearest float (to within the rounding of two conversions and a division).
     #[must_use]
+    #[inline]
     pub fn value(self) -> f64 {
         match (
             i64::try_from(self.numerator),
@@ -117,6 +124,7 @@ impl Ratio {
 
     /// Sum.
     #[must_use]
+    #[inline]
     pub fn plus(self, other: Self) -> Option<Self> {
         let a = self.numerator.checked_mul(other.denominator)?;
         let b = other.numerator.checked_mul(self.denominator)?;
@@ -128,6 +136,7 @@ impl Ratio {
 
     /// Product.
     #[must_use]
+    #[inline]
     pub fn times(self, other: Self) -> Option<Self> {
         Self::new(
             self.numerator.checked_mul(other.numerator)?,
@@ -137,12 +146,14 @@ impl Ratio {
 
     /// Reciprocal; `None` for 0.
     #[must_use]
+    #[inline]
     pub fn reciprocal(self) -> Option<Self> {
         Self::new(self.denominator, self.numerator)
     }
 
     /// Negative.
     #[must_use]
+    #[inline]
     pub const fn negative(self) -> Self {
         Self {
             numerator: -self.numerator,
@@ -165,6 +176,7 @@ impl Ratio {
 }
 
 impl PartialOrd for Ratio {
+    #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.value().partial_cmp(&other.value())
     }

@@ -7,9 +7,11 @@ use std::path::Path;
 
 /// The folders and files that what is generated depends on: the generator's sources, how this program asks it, and the
 /// versions of what it stands on.
-const SOURCES: [&str; 5] = [
+const SOURCES: [&str; 7] = [
     "codegen/src",
     "core/src",
+    "description/src",
+    "exact/src",
     "xtask/src/robots.rs",
     "xtask/src/manifest.rs",
     "Cargo.lock",
