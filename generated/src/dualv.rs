@@ -14,50 +14,50 @@
 /// | `pose_in_closed_form` | 61, 3 √, 4 sc, 1 at, 5 gd |  |
 /// | `joints` | 184, 4 √, 1 sc, 12 at, 8 gd |  |
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
-/// | `pose_step` | 203, 4 √, 5 sc, 4 at, 15 gd |  |
+/// | `pose_step` | 203, 4 √, 5 sc, 4 at, 16 gd |  |
 /// | `inverse_jacobian` | 80, 4 √, 1 sc, 12 gd |  |
 /// | `inverse_jacobian_from_joints` | 30, 9 sc, 4 gd |  |
-/// | `jacobian` | 196, 4 √, 1 sc, 15 gd |  |
+/// | `jacobian` | 196, 4 √, 1 sc, 19 gd |  |
 /// | `legs_jacobian_from_joints` | 28, 8 sc |  |
 /// | `legs_platform_jacobian_from_joints` | 2, 1 sc |  |
 /// | `closure_platform_jacobian_from_joints` | 46, 9 sc, 4 gd |  |
 /// | `closure_actuator_jacobian_from_joints` | 4, 4 sc |  |
 /// | `joint_velocities` | 122, 4 √, 1 sc, 12 gd |  |
 /// | `joint_accelerations` | 214, 4 √, 1 sc, 12 gd |  |
-/// | `twist_from_actuators` | 171, 4 √, 1 sc, 15 gd |  |
-/// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 15 gd |  |
+/// | `twist_from_actuators` | 171, 4 √, 1 sc, 16 gd |  |
+/// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 17 gd |  |
 /// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 126 |  |
 /// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 43 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 56 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 107 |  |
 /// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 43 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 24 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 56 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
-/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 28 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 10 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 13 gd |  |
-/// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 15 gd; in lanes 61 + 4 x 141 |  |
+/// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 19 gd; in lanes 61 + 4 x 141 |  |
 /// | `inverse_dynamics_from_joints` | 517, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
-/// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 15 gd; in lanes 61 + 4 x 121 |  |
+/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 17 gd; in lanes 61 + 4 x 121 |  |
 /// | `inverse_dynamics_base_from_joints` | 442, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 23 gd | 209, 4 √, 5 sc, 4 at, 15 gd |
+/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 83 |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 86 |  |
 /// | `bias` | 461, 4 √, 1 sc, 12 sg, 12 gd; in lanes 13 + 4 x 122 |  |
 /// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd; in lanes 13 + 4 x 102 |  |
-/// | `forward_dynamics` | 707, 4 √, 1 sc, 12 sg, 15 gd; in lanes 48 + 4 x 169 |  |
-/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd; in lanes 48 + 4 x 155 |  |
-/// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 14 gd |  |
-/// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
+/// | `forward_dynamics` | 707, 4 √, 1 sc, 12 sg, 19 gd; in lanes 48 + 4 x 169 |  |
+/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 21 gd; in lanes 48 + 4 x 155 |  |
+/// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 17 gd |  |
+/// | `project_torques` | 191, 4 √, 1 sc, 19 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -378,11 +378,11 @@ impl DualV {
     /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 1 arc tangent, 5 guards, 1 negation, 71 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators)])?;
+        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
         /// l_ab = l_bc
         const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
@@ -406,7 +406,7 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t4 = (L_AB_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, "leg1")?;
+        ::overact::guard::reach(t4, 0.2516045340629568, "leg1")?;
         let t5 = ::overact::math::sqrt(t4);
         let t6 = t1 + 0.5 * t2 - l_ab_s1_leg2_minus_l_ab_s1_leg1 * t5;
         let t7 = L_AB * c1_leg3 - 0.3950502153918333;
@@ -435,7 +435,7 @@ impl DualV {
             0.048400000003465476,
             ::overact::ActuatorGroup::All,
         )?;
-        ::overact::guard::reach(t10, "leg3")?;
+        ::overact::guard::reach(t10, 0.2516045340629568, "leg3")?;
         let t18 = 1.0 / t17;
         ::core::result::Result::Ok([
             0.5 * (t6 + t12), 0.5 * (t13 + t14),
@@ -452,11 +452,11 @@ impl DualV {
     /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 12 arc tangents, 8 guards, 7 negations, 197 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// l_ab²
@@ -477,7 +477,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -494,7 +494,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -515,7 +515,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -532,7 +532,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -605,11 +605,11 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -626,7 +626,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -635,7 +635,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -648,7 +648,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -657,7 +657,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -688,15 +688,17 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 203 operations (83 additions, 109 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 203 operations (83 additions, 109 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 3],
         actuators: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
+        )?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -716,7 +718,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -729,7 +731,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -745,7 +747,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -758,7 +760,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -846,7 +848,9 @@ impl DualV {
         )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        ::core::result::Result::Ok([inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
+        let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
+        ::overact::guard::size(t6, 1e100)?;
+        ::core::result::Result::Ok([t6, t5, t4])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -858,11 +862,11 @@ impl DualV {
     /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 6 negations, 74 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -878,7 +882,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -890,7 +894,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -905,7 +909,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -917,7 +921,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -956,12 +960,12 @@ impl DualV {
     /// 30 operations (8 additions, 18 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 32 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// r_p
@@ -1012,14 +1016,14 @@ impl DualV {
     ///
     /// Output: 3 x 4.
     ///
-    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 3 negations, 190 intermediates.
+    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 3 negations, 190 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
@@ -1036,7 +1040,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -1048,7 +1052,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -1063,7 +1067,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -1075,7 +1079,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -1141,32 +1145,33 @@ impl DualV {
                 * (minus_g1_wz_leg1 + g1_vx_leg1 * l_3_1
                     + l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg1);
             let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg1 + l_3_2 * t1;
+            let t3 = g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1;
+            ::overact::guard::size(t3, 1e100)?;
             let g1_vy_minus_g1_vx_l_2_1_leg2 = minus_g1_vx_leg2 * l_2_1
                 - minus_g1_vy_leg2;
-            let t3 = inv_pivot_3
+            let t4 = inv_pivot_3
                 * (g1_wz_leg2 + minus_g1_vx_leg2 * l_3_1
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg2);
-            let t4 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg2 - l_3_2 * t3;
+            let t5 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg2 - l_3_2 * t4;
+            let t6 = minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t5 + l_3_1 * t4;
+            ::overact::guard::size(t6, 1e100)?;
             let g1_vy_minus_g1_vx_l_2_1_leg3 = g1_vy_leg3 - g1_vx_leg3 * l_2_1;
-            let t5 = inv_pivot_3
+            let t7 = inv_pivot_3
                 * (g1_wz_leg3 - g1_vx_leg3 * l_3_1
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg3);
-            let t6 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg3 - l_3_2 * t5;
+            let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg3 - l_3_2 * t7;
+            let t9 = g1_vx_leg3 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+            ::overact::guard::size(t9, 1e100)?;
             let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1
                 - minus_g1_vy_leg4;
-            let t7 = inv_pivot_3
+            let t10 = inv_pivot_3
                 * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
-            let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t7;
+            let t11 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t10;
+            let t12 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t11 + l_3_1 * t10;
+            ::overact::guard::size(t12, 1e100)?;
             ::core::result::Result::Ok([
-                [
-                    g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1,
-                    -(minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t4 + l_3_1 * t3),
-                    g1_vx_leg3 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5,
-                    -(minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t8 + l_3_1 * t7),
-                ],
-                [t2, t4, t6, t8],
-                [-t1, t3, t5, t7],
+                [t3, -t6, t9, -t12], [t2, t5, t8, t11], [-t1, t4, t7, t10],
             ])
         })
     }
@@ -1181,12 +1186,12 @@ impl DualV {
     /// 28 operations (12 additions, 16 multiplications, 0 divisions), 8 trigonometric pairs, 8 negations, 28 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 12]; 12], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_ab = l_bc
         const L_AB: ::core::primitive::f64 = 0.28;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -1250,12 +1255,12 @@ impl DualV {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 12], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
@@ -1279,12 +1284,12 @@ impl DualV {
     /// 46 operations (8 additions, 34 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 48 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// l_ab = l_bc
@@ -1352,12 +1357,12 @@ impl DualV {
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 4 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         // --- sines and cosines
@@ -1380,12 +1385,12 @@ impl DualV {
     /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 116 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -1401,7 +1406,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1429,7 +1434,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -1455,7 +1460,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1481,7 +1486,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -1516,14 +1521,16 @@ impl DualV {
     /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 208 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
@@ -1543,7 +1550,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -1588,7 +1595,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -1625,7 +1632,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -1664,7 +1671,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -1708,16 +1715,16 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 174 intermediates.
+    /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
@@ -1735,7 +1742,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -1747,7 +1754,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -1762,7 +1769,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -1774,7 +1781,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -1849,9 +1856,9 @@ impl DualV {
             )?;
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-            ::core::result::Result::Ok([
-                inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4,
-            ])
+            let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
+            ::overact::guard::size(t6, 1e100)?;
+            ::core::result::Result::Ok([t6, t5, t4])
         })
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
@@ -1863,19 +1870,19 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 274 intermediates.
+    /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 274 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist),
-                ("actuator_accelerations", actuator_accelerations),
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -1896,7 +1903,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1909,7 +1916,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -1925,7 +1932,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1938,7 +1945,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -2090,9 +2097,10 @@ impl DualV {
             )?;
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-            ::core::result::Result::Ok([
-                inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4,
-            ])
+            ::overact::guard::size(t5, 1e100)?;
+            let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
+            ::overact::guard::size(t6, 1e100)?;
+            ::core::result::Result::Ok([t6, t5, t4])
         })
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -2110,7 +2118,7 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2133,8 +2141,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
@@ -2200,6 +2210,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -2226,7 +2241,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -2549,7 +2570,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -2558,7 +2579,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -2568,7 +2589,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -2576,7 +2597,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -2995,7 +3016,7 @@ impl DualV {
     /// 404 operations (122 additions, 278 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 34 negations, 250 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -3021,10 +3042,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -3535,11 +3556,11 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 51 negations, 526 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 43 guards, 51 negations, 526 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -3565,10 +3586,10 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -3615,7 +3636,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -3627,7 +3648,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -3636,7 +3657,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -3644,7 +3665,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -3913,9 +3934,65 @@ impl DualV {
             output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
             output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+                + minus_g2_vy_leg3 * v_end_y_leg3;
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[0][40] = ::overact::math::wide::signed(
+                minus_gq2_vx_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[1][40] = ::overact::math::wide::signed(
+                minus_gq2_vy_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
+                minus_gq2_wz_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][54] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
+            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+            output[1][54] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
+            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+            output[2][54] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
+            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
+            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
+            output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
+            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
+                minus_g2_vx_leg3,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            output[1][43] = ::overact::math::wide::signed(
+                minus_g2_vy_leg3,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+            output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+            output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             // --- leg1
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
@@ -3940,8 +4017,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
-            let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
-                + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
@@ -3955,7 +4030,6 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -3981,10 +4055,12 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
+            ::overact::guard::size(dwz, 1e100)?;
             output[2][60] = dwz; // zz_platform
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
             output[1][63] = dvy; // m_platform
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
+            ::overact::guard::size(dvx, 1e100)?;
             output[0][63] = dvx; // m_platform
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
@@ -4022,10 +4098,6 @@ impl DualV {
             output[2][50] = zz_2_leg4_on_wz;
             output[2][51] = r_p_per_l_ab_a3_x_leg3
                 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             let a_y_platform = c_phi * dvy - s_phi * dvx;
             output[2][61] = a_y_platform; // mx_platform
             // --- leg1
@@ -4033,12 +4105,16 @@ impl DualV {
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
+            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
             output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
+            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
+            ::overact::guard::size(t4_leg3, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
@@ -4049,32 +4125,32 @@ impl DualV {
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
+            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
             output[0][15] = zz_1_leg2_on_vx;
             output[0][16] = zz_1_leg2_on_vx; // ia_1_leg2
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
+            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
             output[0][21] = inv_l_ab_a_end_x_leg1
                 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx); // mx_2_leg2
+            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
+            // --- leg1
             let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
             output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
                 + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
-            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
-                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
-            output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
                 + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
             output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
                 + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
-            // --- leg1
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
             output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
@@ -4098,11 +4174,15 @@ impl DualV {
                 + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz); // mx_2_leg1
             output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
+            // --- leg2
+            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
             output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
                 + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
             output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
                 + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
-            // --- leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
             output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
@@ -4119,76 +4199,16 @@ impl DualV {
                 + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz); // mx_2_leg2
             output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
-            // --- leg3
-            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
-            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            output[0][30] = zz_1_leg3_on_vx;
-            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
-            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
-            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
-            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-            output[2][30] = zz_1_leg3_on_wz;
-            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
-            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = zz_2_leg3_on_wz;
-            output[2][36] = r_p_per_l_ab_a3_x_leg3
-                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
-            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][30] = zz_1_leg3_on_vy;
-            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
-            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = zz_2_leg3_on_vx;
-            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][36] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
-            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = zz_2_leg3_on_vy;
-            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][36] = inv_l_ab_a_end_y_leg3
-                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
-            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[0][40] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[1][40] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][43] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
+            // --- leg4
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
                 + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
             output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
                 + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
-            // --- leg4
             let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
             output[0][45] = zz_1_leg4_on_vx;
             output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
@@ -4197,34 +4217,55 @@ impl DualV {
             output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
             let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
             output[0][50] = zz_2_leg4_on_vx;
-            output[0][51] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
             let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
             output[1][50] = zz_2_leg4_on_vy;
+            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
+            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
             output[1][51] = inv_l_ab_a_end_y_leg3
                 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
             output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][54] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
-            let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
-            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
-            output[1][54] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
-            output[2][54] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
-            output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
-            output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][61] = -minus_mx_platform_on_vx; // mx_platform
             output[1][62] = -minus_mx_platform_on_vx; // my_platform
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
             output[1][61] = -my_platform_on_vx; // mx_platform
+            // --- leg3
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][30] = zz_1_leg3_on_vx;
+            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = zz_2_leg3_on_vx;
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
+            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
+            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
+            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][30] = zz_1_leg3_on_vy;
+            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = zz_2_leg3_on_vy;
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
+            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+            output[2][30] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
+            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_wz;
+            output[2][36] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -4241,7 +4282,7 @@ impl DualV {
     /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 48 negations, 401 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -4264,8 +4305,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -4309,7 +4352,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -4318,7 +4361,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -4330,7 +4373,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -4339,7 +4382,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -4834,7 +4877,7 @@ impl DualV {
     /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 58 negations, 366 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -4860,10 +4903,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -5382,11 +5425,11 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 49 negations, 628 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 56 guards, 49 negations, 628 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -5412,10 +5455,10 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 64]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -5465,7 +5508,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -5474,7 +5517,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -5486,7 +5529,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -5495,7 +5538,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -5660,6 +5703,23 @@ impl DualV {
             output[2][56] = off_2_leg4_on_q1_leg3;
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
             output[2][59] = off_3_leg4_on_q1_leg3;
+            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            let vy_by_a3 = p_x_leg3 * wz_by_a3;
+            let vx_by_a3 = p_y_leg1 * wz_by_a3;
+            let minus_g2_a3_leg3 = 2.0
+                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+            output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
+            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][44] = off_3_leg3_on_q1_leg3;
+            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
+                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
+            output[0][41] = g2_a1_leg3; // off_2_leg3
+            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
+                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
+            output[1][41] = g2_a2_leg3; // off_2_leg3
             let inv_pivot_3 = 1.0 / pivot_3;
             let t2 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -5678,20 +5738,24 @@ impl DualV {
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let vy = inv_pivot_2 * t3 - l_3_2 * wz;
             let vx = inv_pivot_1 * t2 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
             output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
@@ -5701,6 +5765,7 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -5708,6 +5773,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
@@ -5716,18 +5782,18 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
                 - bias_rate_dot_1_leg2;
             // --- leg3
-            let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
             let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
             output[2][32] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
@@ -5737,6 +5803,7 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -5744,6 +5811,7 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -5764,6 +5832,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t5
                 - l_3_2 * t6;
             let dwz = inv_pivot_3 * t7;
+            ::overact::guard::size(dwz, 1e100)?;
             let dvy = inv_pivot_2 * t6 - l_3_2 * dwz;
             let dvx = inv_pivot_1 * t5 - l_2_1 * dvy - l_3_1 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
@@ -5779,10 +5848,6 @@ impl DualV {
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
-            let vy_by_a3 = p_x_leg3 * wz_by_a3;
-            let vx_by_a3 = p_y_leg1 * wz_by_a3;
-            let minus_g2_a3_leg3 = 2.0
-                * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
@@ -5809,6 +5874,7 @@ impl DualV {
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             output[0][0] = rate_dot_1_leg1; // zz_1_leg1
             output[0][1] = rate_dot_1_leg1; // ia_1_leg1
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
@@ -5816,29 +5882,71 @@ impl DualV {
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             output[1][15] = -minus_rate_dot_1_leg2; // zz_1_leg2
             output[1][16] = -minus_rate_dot_1_leg2; // ia_1_leg2
-            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
-            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
             let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
             output[2][35] = zz_2_leg3_on_q1_leg3;
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
+            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
             output[2][50] = zz_2_leg4_on_q1_leg3;
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][61] = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_q1_leg1;
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
+            // --- leg4
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][48] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[1][48] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
+            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            // --- platform
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            let mx_platform_on_q1_leg3 = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            output[2][61] = mx_platform_on_q1_leg3;
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
             output[0][10] = -::overact::math::wide::signed(
@@ -5863,10 +5971,6 @@ impl DualV {
             ); // fs_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
             output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
-            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
-            output[0][20] = zz_2_leg2_on_q1_leg1;
-            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
             output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
@@ -5888,63 +5992,71 @@ impl DualV {
             ); // fs_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
+            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][60] = zz_platform_on_q1_leg3;
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+                + wz_by_a3_a_x_platform;
+            output[2][62] = -minus_my_platform_on_q1_leg3; // my_platform
+            let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+            output[2][36] = t1_platform
+                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3); // mx_2_leg3
+            output[2][51] = t1_platform
+                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
+            output[2][63] = R_P * wz_by_a3_a_x_platform; // m_platform
+            // --- leg3
+            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
+            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
+            output[2][40] = ::overact::math::wide::signed(
+                minus_off_2_leg3_on_q1_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            output[0][40] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            output[1][40] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
+            let qd_3_leg3 = minus_rate_2_leg3 + wz;
+            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
+            output[2][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg3,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            let fv_3_leg3_on_q1_leg1 = qd_3_leg3 * off_3_leg3_on_q1_leg1;
+            ::overact::guard::size(fv_3_leg3_on_q1_leg1, 1e100)?;
+            output[0][42] = fv_3_leg3_on_q1_leg1;
+            output[1][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            let minus_fv_3_leg3_on_q1_leg2 = qd_3_leg3 * minus_off_3_leg3_on_q1_leg2;
+            ::overact::guard::size(minus_fv_3_leg3_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(dvx, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
+            output[1][42] = -minus_fv_3_leg3_on_q1_leg2; // fv_3_leg3
             // --- leg4
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
-            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
-            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
-            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
-            output[1][48] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
-            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
-            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            output[2][45] = zz_1_leg4_on_q1_leg3;
-            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
-            output[0][50] = zz_2_leg4_on_q1_leg1;
-            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
-            output[1][50] = zz_2_leg4_on_q1_leg2;
-            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
-            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            ); // fs_2_leg4
             let qd_3_leg4 = wz - rate_2_leg4;
             output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
             output[0][58] = ::overact::math::wide::signed(
@@ -5961,52 +6073,63 @@ impl DualV {
                 off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
             ); // fs_3_leg4
-            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
-            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
+            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_q1_leg1;
+            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_q1_leg2;
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
+            output[0][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg1,
+                qd_2_leg4,
+            ); // fs_2_leg4
+            output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
+            output[1][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg2,
+                qd_2_leg4,
+            ); // fs_2_leg4
+            output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
+            output[2][55] = ::overact::math::wide::signed(
+                off_2_leg4_on_q1_leg3,
+                qd_2_leg4,
+            ); // fs_2_leg4
             // --- platform
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[0][62] = my_platform_on_q1_leg1;
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            output[1][62] = my_platform_on_q1_leg2;
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][63] = R_P * wz_by_a3_a_x_platform; // m_platform
-            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            output[2][60] = zz_platform_on_q1_leg3;
-            let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
-                + wz_by_a3_a_x_platform;
-            output[2][62] = -minus_my_platform_on_q1_leg3; // my_platform
-            let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
-            output[2][36] = t1_platform
-                - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3); // mx_2_leg3
-            output[2][51] = t1_platform
-                - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
-            let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][44] = off_3_leg3_on_q1_leg3;
-            output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
-            let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
-            let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
-                - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
-            output[0][41] = g2_a1_leg3; // off_2_leg3
-            let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2
-                - minus_g2_vx_leg3 * vx_by_a2 + minus_g2_wz_leg3 * minus_wz_by_a2;
-            output[1][41] = g2_a2_leg3; // off_2_leg3
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
-            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
-            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            output[0][63] = m_platform_on_q1_leg1;
-            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
-            output[1][63] = m_platform_on_q1_leg2;
             let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
             output[0][60] = zz_platform_on_q1_leg1;
+            let mx_platform_on_q1_leg1 = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[0][61] = mx_platform_on_q1_leg1;
+            let mx_platform_on_q1_leg2 = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            output[1][61] = mx_platform_on_q1_leg2;
+            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            ::overact::guard::size(m_platform_on_q1_leg1, 1e100)?;
+            output[0][63] = m_platform_on_q1_leg1;
+            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            ::overact::guard::size(m_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
+            ::overact::guard::size(my_platform_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(my_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(wz_by_a3_a_x_platform, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg3, 1e100)?;
+            output[1][63] = m_platform_on_q1_leg2;
+            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
+            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
             let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
             let t2_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
             let t3_platform = R_P_SQUARED_PER_L_AB
@@ -6020,9 +6143,8 @@ impl DualV {
             output[0][51] = t4_platform
                 - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1); // mx_2_leg4
             output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1; // mx_2_leg2
+            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
-            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
-            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
             let t5_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
@@ -6036,47 +6158,7 @@ impl DualV {
             output[1][51] = t7_platform
                 - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2); // mx_2_leg4
             output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
-            // --- leg3
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
-            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
             output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
-            output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
-            output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
-            output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][40] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
-                minus_off_2_leg3_on_q1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
-            output[0][44] = off_3_leg3_on_q1_leg1;
-            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
-            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
-            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][43] = -::overact::math::wide::signed(
-                minus_off_3_leg3_on_q1_leg2,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[2][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -6095,7 +6177,7 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -6118,8 +6200,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
@@ -6187,6 +6271,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -6212,7 +6301,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -6502,7 +6597,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -6514,7 +6609,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -6526,7 +6621,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -6534,7 +6629,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -6864,7 +6959,7 @@ impl DualV {
     /// 346 operations (96 additions, 246 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 30 negations, 225 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -6890,10 +6985,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -7307,11 +7402,11 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 43 negations, 486 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 43 guards, 43 negations, 486 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7337,10 +7432,10 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -7377,7 +7472,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -7386,7 +7481,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -7397,7 +7492,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -7406,7 +7501,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -7706,8 +7801,21 @@ impl DualV {
             output[1][43] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
             output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
             output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+            output[2][43] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
@@ -7771,12 +7879,14 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
+            ::overact::guard::size(dwz, 1e100)?;
             output[2][0] = dwz; // zz_platformR
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
             output[1][3] = dvy; // m_platformR
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
+            ::overact::guard::size(dvx, 1e100)?;
             output[0][3] = dvx; // m_platformR
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
@@ -7788,11 +7898,13 @@ impl DualV {
             output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
+            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
+            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
@@ -7804,10 +7916,6 @@ impl DualV {
             output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
-            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             // --- leg3
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
@@ -7818,13 +7926,19 @@ impl DualV {
             output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
             let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
             output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             // --- leg4
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
+            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
@@ -7834,10 +7948,6 @@ impl DualV {
             output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
-            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][1] = -minus_mx_platform_on_vx; // mx_platform
             output[1][2] = -minus_mx_platform_on_vx; // my_platformR
@@ -7850,12 +7960,6 @@ impl DualV {
             output[2][2] = -a_x_platform; // my_platformR
             output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
-            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
-                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
-            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
-            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
             output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
@@ -7866,12 +7970,6 @@ impl DualV {
             output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
             output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
-            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
-            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
@@ -7880,9 +7978,26 @@ impl DualV {
                 + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
-            output[2][43] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
+            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
+            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
+            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -7899,7 +8014,7 @@ impl DualV {
     /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 39 negations, 376 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -7922,8 +8037,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -7972,7 +8089,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -7981,7 +8098,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -7993,7 +8110,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -8002,7 +8119,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -8420,7 +8537,7 @@ impl DualV {
     /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 51 negations, 341 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -8446,10 +8563,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -8899,11 +9016,11 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 24 guards, 40 negations, 607 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 56 guards, 40 negations, 607 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -8929,10 +9046,10 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 49]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -8987,7 +9104,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -8996,7 +9113,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -9008,7 +9125,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -9017,7 +9134,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -9171,6 +9288,17 @@ impl DualV {
                 + minus_g2_wz_leg2 * minus_wz_by_a2;
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
+            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+                + g2_wz_leg4 * wz_by_a1;
+            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+            output[0][39] = off_2_leg4_on_q1_leg1; // off_2_leg4R
+            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+                - g2_wz_leg4 * minus_wz_by_a2;
+            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+            output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
             let inv_pivot_3 = 1.0 / pivot_3;
             let t4 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -9189,14 +9317,17 @@ impl DualV {
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let vy = inv_pivot_2 * t5 - l_3_2 * wz;
             let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -9204,6 +9335,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
@@ -9214,12 +9346,14 @@ impl DualV {
             // --- leg1
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
             output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
@@ -9232,12 +9366,14 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
             output[2][10] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
@@ -9246,9 +9382,8 @@ impl DualV {
             let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
-            let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-            let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -9256,6 +9391,7 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -9276,6 +9412,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
                 - l_3_2 * t8;
             let dwz = inv_pivot_3 * t9;
+            ::overact::guard::size(dwz, 1e100)?;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
@@ -9284,25 +9421,18 @@ impl DualV {
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
             output[2][27] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
-            // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -9327,49 +9457,33 @@ impl DualV {
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             output[0][21] = g2_a1_leg2 * rate_dot_2_leg2; // zz_2_leg2R
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            output[2][1] = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_platformR
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][21] = g2_a2_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
-            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
-            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             output[0][25] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             output[0][0] = wz_by_a1 * dwz; // zz_platformR
             output[1][0] = -(minus_wz_by_a2 * dwz); // zz_platformR
-            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
-            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
-            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
-            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform; // my_platformR
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
-            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
-            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy; // m_platformR
-            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy; // m_platformR
-            let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
-                + g2_wz_leg4 * wz_by_a1;
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
-                - g2_wz_leg4 * minus_wz_by_a2;
-            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            // --- platform
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            let mx_platform_on_q1_leg3 = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
+            output[2][1] = mx_platform_on_q1_leg3;
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][2] = my_platform_on_q1_leg1; // my_platformR
             output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
             output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
@@ -9390,10 +9504,39 @@ impl DualV {
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             ); // fs_1_leg4
-            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
-            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+            output[2][23] = g2_a3_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             output[0][26] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
             output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
+            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][2] = my_platform_on_q1_leg2; // my_platformR
+            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
+            let mx_platform_on_q1_leg1 = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
+            output[0][1] = mx_platform_on_q1_leg1;
+            let mx_platform_on_q1_leg2 = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
+            output[1][1] = mx_platform_on_q1_leg2;
+            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            output[0][3] = m_platform_on_q1_leg1; // m_platformR
+            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[1][3] = m_platform_on_q1_leg2; // m_platformR
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][22] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3R
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][22] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3R
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
@@ -9427,17 +9570,6 @@ impl DualV {
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
-            // --- leg4
-            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
-            output[0][39] = off_2_leg4_on_q1_leg1; // off_2_leg4R
-            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
-            let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
-            output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
-            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
-            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
             output[0][34] = -::overact::math::wide::signed(
                 g2_a1_leg3,
                 minus_qd_2_leg3,
@@ -9446,14 +9578,18 @@ impl DualV {
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
+            let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+            output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             output[0][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 qd_2_leg4,
             ); // fs_2_leg4
+            output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
             output[1][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             ); // fs_2_leg4
+            output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
             output[2][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
@@ -9487,11 +9623,22 @@ impl DualV {
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
-            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
+            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
+            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
+            output[2][46] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            output[2][47] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg4,
+                qd_3_leg4,
+            ); // fs_3_leg4
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
+            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][46] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
@@ -9500,30 +9647,42 @@ impl DualV {
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
-            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
+            let fv_3_leg3_on_q1_leg1 = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
+            ::overact::guard::size(fv_3_leg3_on_q1_leg1, 1e100)?;
+            output[0][42] = fv_3_leg3_on_q1_leg1;
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][46] = -::overact::math::wide::signed(
-                g2_a2_minus_wz_by_a2_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
             output[1][47] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
-            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg3,
+            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][46] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
-            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            let minus_fv_3_leg3_on_q1_leg2 = qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3;
+            ::overact::guard::size(minus_fv_3_leg3_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(dvx, 1e100)?;
+            ::overact::guard::size(m_platform_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(m_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
+            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
+            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(mx_platform_on_q1_leg3, 1e100)?;
+            ::overact::guard::size(my_platform_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(my_platform_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(wz_by_a3_a_x_platform, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg2, 1e100)?;
+            output[1][42] = -minus_fv_3_leg3_on_q1_leg2; // fv_3_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -9540,7 +9699,7 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_payload(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9563,8 +9722,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 4]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
@@ -9611,7 +9772,7 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_payload_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -9637,10 +9798,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 4]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / r_p
@@ -9685,11 +9846,11 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 23 guards, 5 negations, 390 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 28 guards, 5 negations, 390 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -9715,10 +9876,10 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 4]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -9750,7 +9911,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -9759,7 +9920,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -9771,7 +9932,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -9780,7 +9941,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
             ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -9967,6 +10128,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
+            ::overact::guard::size(dwz, 1e100)?;
             output[2][0] = dwz; // zz_payload
             let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
             output[1][3] = dvy; // m_payload
@@ -9979,10 +10141,14 @@ impl DualV {
             // --- leg1
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+            ::overact::guard::size(minus_mx_payload_on_vx, 1e100)?;
             output[0][1] = -minus_mx_payload_on_vx; // mx_payload
             output[1][2] = -minus_mx_payload_on_vx; // my_payload
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
+            ::overact::guard::size(my_payload_on_vx, 1e100)?;
+            ::overact::guard::size(dvy, 1e100)?;
+            ::overact::guard::size(dvx, 1e100)?;
             output[0][2] = my_payload_on_vx;
             output[1][1] = -my_payload_on_vx; // mx_payload
             ::core::result::Result::Ok(())
@@ -10001,7 +10167,7 @@ impl DualV {
     /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 10 guards, 2 negations, 142 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10024,8 +10190,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         output: &mut [[::core::primitive::f64; 4]; 3],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
@@ -10044,7 +10212,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -10053,7 +10221,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
@@ -10063,7 +10231,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -10150,12 +10318,12 @@ impl DualV {
     /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 104 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -10171,7 +10339,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -10183,7 +10351,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -10198,7 +10366,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -10210,7 +10378,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -10251,12 +10419,12 @@ impl DualV {
     /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 13 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -10311,19 +10479,19 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
@@ -10377,22 +10545,22 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 575 intermediates.
+    /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 19 guards, 1 negation, 575 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 141 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
@@ -10471,6 +10639,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -10515,7 +10688,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -10686,7 +10865,11 @@ impl DualV {
                     )?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = t1 / pivot_2 - l_3_2 * t2;
-                    [sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
+                    ::overact::guard::size(t3, 1e100)?;
+                    let t4 = sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2;
+                    ::overact::guard::size(t4, 1e100)?;
+                    ::overact::guard::size(t2, 1e100)?;
+                    [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
@@ -10726,7 +10909,7 @@ impl DualV {
     /// 517 operations (218 additions, 289 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 531 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -10734,10 +10917,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("parameters", parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -11088,11 +11271,11 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 748 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 2 negations, 748 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -11100,11 +11283,11 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
-                ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("parameters", parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -11143,7 +11326,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -11157,7 +11340,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = t1_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -11171,7 +11354,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -11183,7 +11366,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -11267,8 +11450,10 @@ impl DualV {
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = t2 / pivot_2 - l_3_2 * wz;
             let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
@@ -11277,12 +11462,14 @@ impl DualV {
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED
                 * rate_1_squared_leg1;
@@ -11296,6 +11483,7 @@ impl DualV {
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -11303,6 +11491,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED
                 * rate_1_squared_leg2;
@@ -11319,12 +11508,14 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED
                 * rate_1_squared_leg3;
@@ -11338,6 +11529,7 @@ impl DualV {
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -11345,6 +11537,7 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let l_ab_squared_rate_1_squared_leg4 = L_AB_SQUARED
                 * rate_1_squared_leg4;
@@ -11368,6 +11561,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
+            ::overact::guard::size(dwz, 1e100)?;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
             let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
             // --- leg1
@@ -11565,8 +11759,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
+            ::overact::guard::size(t9, 1e100)?;
             let t10 = t7 / pivot_2 - l_3_2 * t9;
+            ::overact::guard::size(t10, 1e100)?;
             let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
+            ::overact::guard::size(t11, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
@@ -11586,22 +11783,22 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 490 operations (217 additions, 259 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 492 intermediates.
+    /// 490 operations (217 additions, 259 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 492 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 121 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 53],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
@@ -11674,6 +11871,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -11720,7 +11922,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -11878,7 +12086,11 @@ impl DualV {
                     )?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = t1 / pivot_2 - l_3_2 * t2;
-                    [sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
+                    ::overact::guard::size(t3, 1e100)?;
+                    let t4 = sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2;
+                    ::overact::guard::size(t4, 1e100)?;
+                    ::overact::guard::size(t2, 1e100)?;
+                    [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
@@ -11918,7 +12130,7 @@ impl DualV {
     /// 442 operations (187 additions, 245 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 456 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -11926,10 +12138,10 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 53],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -12239,11 +12451,11 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 23 guards, 2 negations, 665 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 15 guards, 218 intermediates.
+    /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 2 negations, 665 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -12251,11 +12463,11 @@ impl DualV {
         base_parameters: &[::core::primitive::f64; 53],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations),
-                ("base_parameters", base_parameters), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("base_parameters", base_parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -12286,7 +12498,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -12307,7 +12519,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
@@ -12327,7 +12539,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
@@ -12343,7 +12555,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -12410,8 +12622,10 @@ impl DualV {
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = inv_pivot_2 * t2 - l_3_2 * wz;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
@@ -12420,12 +12634,14 @@ impl DualV {
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+            ::overact::guard::size(rate_1_leg1, 1e100)?;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -12436,6 +12652,7 @@ impl DualV {
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -12443,6 +12660,7 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
+            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -12456,12 +12674,14 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            ::overact::guard::size(rate_1_leg3, 1e100)?;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
@@ -12472,6 +12692,7 @@ impl DualV {
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -12479,6 +12700,7 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
+            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -12499,6 +12721,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
+            ::overact::guard::size(dwz, 1e100)?;
             let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
             // --- leg1
@@ -12662,8 +12885,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
+            ::overact::guard::size(t9, 1e100)?;
             let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
+            ::overact::guard::size(t10, 1e100)?;
             let t11 = t1_platform / s_1_1 - l_2_1 * t10 - l_3_1 * t9;
+            ::overact::guard::size(t11, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
@@ -12686,12 +12912,14 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
+        )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
@@ -12748,6 +12976,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -12783,7 +13016,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -12904,7 +13143,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -12927,7 +13166,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -12956,7 +13195,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -12980,7 +13219,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -13103,13 +13342,13 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 53],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
@@ -13169,6 +13408,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -13201,7 +13445,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -13314,7 +13564,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -13331,7 +13581,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -13361,7 +13611,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -13385,7 +13635,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -13521,14 +13771,16 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
+            ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
@@ -13595,6 +13847,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -13639,7 +13896,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -13763,14 +14026,17 @@ impl DualV {
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 53],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("base_parameters", base_parameters, 1e12),
+            ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
         struct Legs<'a> {
@@ -13831,6 +14097,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -13877,7 +14148,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -13989,21 +14266,22 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 707 operations (298 additions, 382 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 710 intermediates.
+    /// 707 operations (298 additions, 382 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 19 guards, 710 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 169 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
@@ -14073,6 +14351,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -14119,7 +14402,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -14299,8 +14588,14 @@ impl DualV {
                     let l_3_2 = schur_2_3 * inv_pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
                     ::overact::guard::mass(pivot_3)?;
+                    ::overact::guard::size(inv_pivot_1, 1e100)?;
+                    ::overact::guard::size(inv_pivot_2, 1e100)?;
+                    ::overact::guard::size(l_3_2, 1e100)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = inv_pivot_2 * t1 - l_3_2 * t2;
+                    ::overact::guard::size(t3, 1e100)?;
+                    ::overact::guard::size(pivot_3, 1e100)?;
+                    ::overact::guard::size(t2, 1e100)?;
                     [inv_pivot_1 * sums[6] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
                 };
                 ::core::result::Result::Ok(output)
@@ -14323,22 +14618,22 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 612 intermediates.
+    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 612 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 155 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
         base_parameters: &[::core::primitive::f64; 53],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
@@ -14406,6 +14701,11 @@ impl DualV {
                     0.15606475932928948,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 4] = [
+                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
+                    0.25235556276083826,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 4] = [
                     0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
                 ];
@@ -14454,7 +14754,13 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
@@ -14619,8 +14925,14 @@ impl DualV {
                     let l_3_2 = schur_2_3 * inv_pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
                     ::overact::guard::mass(pivot_3)?;
+                    ::overact::guard::size(inv_pivot_1, 1e100)?;
+                    ::overact::guard::size(inv_pivot_2, 1e100)?;
+                    ::overact::guard::size(l_3_2, 1e100)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = inv_pivot_2 * t1 - l_3_2 * t2;
+                    ::overact::guard::size(t3, 1e100)?;
+                    ::overact::guard::size(pivot_3, 1e100)?;
+                    ::overact::guard::size(t2, 1e100)?;
                     [inv_pivot_1 * sums[6] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
                 };
                 ::core::result::Result::Ok(output)
@@ -14644,10 +14956,10 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 14 guards, 583 intermediates.
+    /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 17 guards, 583 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -14655,10 +14967,10 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("parameters", parameters), ("preload", preload),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -14689,7 +15001,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -14762,7 +15074,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -14830,7 +15142,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -14904,7 +15216,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -15055,10 +15367,13 @@ impl DualV {
                 + t3_platform * wz_by_a3;
             let t14 = preload[0] + share_1_4_inv_norm_4 * t5
                 + share_2_4_inv_norm_4 * t12 - minus_share_3_4_inv_norm_4 * t13;
-            ::core::result::Result::Ok([
-                t5 - share_1_4_inv_norm_4 * t14, t12 - share_2_4_inv_norm_4 * t14,
-                t13 + minus_share_3_4_inv_norm_4 * t14, inv_norm_4 * t14,
-            ])
+            let t15 = t5 - share_1_4_inv_norm_4 * t14;
+            ::overact::guard::size(t15, 1e100)?;
+            let t16 = t12 - share_2_4_inv_norm_4 * t14;
+            ::overact::guard::size(t16, 1e100)?;
+            let t17 = t13 + minus_share_3_4_inv_norm_4 * t14;
+            ::overact::guard::size(t17, 1e100)?;
+            ::core::result::Result::Ok([t15, t16, t17, inv_norm_4 * t14])
         })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -15069,15 +15384,15 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 1 negation, 193 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
@@ -15094,7 +15409,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -15106,7 +15421,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -15121,7 +15436,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -15133,7 +15448,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -15204,13 +15519,17 @@ impl DualV {
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::core::result::Result::Ok([
-                g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
-                g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
-                g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
-                -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
-                    + minus_g1_wz_leg4 * t4),
-            ])
+            let t7 = g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4;
+            ::overact::guard::size(t7, 1e100)?;
+            let t8 = g1_wz_leg2 * t4
+                - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5);
+            ::overact::guard::size(t8, 1e100)?;
+            let t9 = g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4;
+            ::overact::guard::size(t9, 1e100)?;
+            let t10 = minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
+                + minus_g1_wz_leg4 * t4;
+            ::overact::guard::size(t10, 1e100)?;
+            ::core::result::Result::Ok([t7, t8, t9, -t10])
         })
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -15223,11 +15542,11 @@ impl DualV {
     /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 14 guards, 3 negations, 138 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn null_space(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -15282,19 +15601,19 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
@@ -15336,12 +15655,14 @@ impl DualV {
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.
     ///
     /// # Errors
-    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+        ::overact::guard::within(
+            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
+        )?;
         let closed = Self::pose_in_closed_form(actuators).ok();
         ::overact::forward::from_closed_form(
             closed,

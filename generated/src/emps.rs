@@ -27,8 +27,8 @@
 /// | `mass_matrix_base` | 0 |  |
 /// | `bias` | 4, 1 sg |  |
 /// | `bias_base` | 4, 1 sg |  |
-/// | `forward_dynamics` | 7, 1 sg, 1 gd |  |
-/// | `forward_dynamics_base` | 6, 1 sg, 1 gd |  |
+/// | `forward_dynamics` | 7, 1 sg, 2 gd |  |
+/// | `forward_dynamics_base` | 6, 1 sg, 2 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -124,11 +124,11 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joints(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([joints[0]])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -141,11 +141,11 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([joints[0]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -158,11 +158,11 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_jacobian(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([[1.0]])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -176,13 +176,13 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joint_velocities(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("joint_velocities", joint_velocities)],
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9)],
         )?;
         ::core::result::Result::Ok([joint_velocities[0]])
     }
@@ -198,16 +198,16 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joint_accelerations(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         ::core::result::Result::Ok([joint_accelerations[0]])
@@ -223,13 +223,15 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn twist_from_actuators(
         joints: &[::core::primitive::f64; 1],
         actuator_velocities: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("actuator_velocities", actuator_velocities)],
+        ::overact::guard::within(
+            &[
+                ("joints", joints, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+            ],
         )?;
         ::core::result::Result::Ok([actuator_velocities[0]])
     }
@@ -245,16 +247,16 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn acceleration_from_actuators(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         actuator_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("actuator_accelerations", actuator_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         ::core::result::Result::Ok([actuator_accelerations[0]])
@@ -272,7 +274,7 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_platform(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -295,10 +297,10 @@ impl Emps {
         joint_accelerations: &[::core::primitive::f64; 1],
         output: &mut [[::core::primitive::f64; 5]; 1],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         output[0][0..2].fill(joint_accelerations[0]);
@@ -320,7 +322,7 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_platform_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -343,10 +345,10 @@ impl Emps {
         joint_accelerations: &[::core::primitive::f64; 1],
         output: &mut [[::core::primitive::f64; 4]; 1],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         output[0][0] = joint_accelerations[0]; // m_1R
@@ -366,12 +368,14 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_platform(
         joints: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
+        )?;
         ::core::result::Result::Ok([torques[0]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -387,17 +391,18 @@ impl Emps {
     /// 7 operations (4 additions, 3 multiplications, 0 divisions), 1 sign, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_dynamics(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations), ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         let force_on_u1_axis = joint_velocities[0] * parameters[2]
@@ -418,17 +423,18 @@ impl Emps {
     /// 6 operations (3 additions, 3 multiplications, 0 divisions), 1 sign, 5 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_dynamics_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
         base_parameters: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations), ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         let force1_z_axis = joint_accelerations[0] * base_parameters[0];
@@ -449,12 +455,14 @@ impl Emps {
     /// 1 operation (1 addition, 0 multiplications, 0 divisions).
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn mass_matrix(
         joints: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("parameters", parameters, 1e12)],
+        )?;
         // --- axis
         let masses_axis_1_1 = parameters[0] + parameters[1];
         ::core::result::Result::Ok([[masses_axis_1_1]])
@@ -470,13 +478,13 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn mass_matrix_base(
         joints: &[::core::primitive::f64; 1],
         base_parameters: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("base_parameters", base_parameters, 1e12)],
         )?;
         ::core::result::Result::Ok([[base_parameters[0]]])
     }
@@ -492,16 +500,16 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn bias(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         let tau_1_axis = joint_velocities[0] * parameters[2]
@@ -521,16 +529,16 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn bias_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         base_parameters: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         let tau_1_axis = joint_velocities[0] * base_parameters[1]
@@ -548,20 +556,20 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 7 operations (4 additions, 2 multiplications, 1 division), 1 sign, 1 guard, 6 intermediates.
+    /// 7 operations (4 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
-                ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("torques", torques, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
         let tau_1_axis = joint_velocities[0] * parameters[2]
@@ -570,7 +578,9 @@ impl Emps {
         // --- axis
         let masses_axis_1_1 = parameters[0] + parameters[1];
         ::overact::guard::mass(masses_axis_1_1)?;
-        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / masses_axis_1_1])
+        let t1 = (torques[0] - tau_1_axis) / masses_axis_1_1;
+        ::overact::guard::size(t1, 1e100)?;
+        ::core::result::Result::Ok([t1])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -582,27 +592,29 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 6 operations (3 additions, 2 multiplications, 1 division), 1 sign, 1 guard, 5 intermediates.
+    /// 6 operations (3 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 5 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
         base_parameters: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
-                ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("torques", torques, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::guard::mass(base_parameters[0])?;
         let tau_1_axis = joint_velocities[0] * base_parameters[1]
             + ::overact::math::signed(base_parameters[2], joint_velocities[0])
             + base_parameters[3];
-        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / base_parameters[0]])
+        let t1 = (torques[0] - tau_1_axis) / base_parameters[0];
+        ::overact::guard::size(t1, 1e100)?;
+        ::core::result::Result::Ok([t1])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
@@ -615,23 +627,27 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_torques(
         joints: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
+        )?;
         ::core::result::Result::Ok([torques[0]])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
     ///
     /// # Errors
-    /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.
+    /// An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+        ::overact::guard::within(
+            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
+        )?;
         ::core::result::Result::Ok(*actuators)
     }
 }

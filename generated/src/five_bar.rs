@@ -50,8 +50,8 @@
 /// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
 /// | `bias` | 179, 2 √, 4 sg, 6 gd |  |
 /// | `bias_base` | 160, 2 √, 4 sg, 6 gd |  |
-/// | `forward_dynamics` | 251, 2 √, 4 sg, 8 gd |  |
-/// | `forward_dynamics_base` | 220, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics` | 251, 2 √, 4 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 220, 2 √, 4 sg, 11 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -244,11 +244,11 @@ impl FiveBar {
     /// 22 operations (10 additions, 11 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 25 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators)])?;
+        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1
@@ -272,7 +272,7 @@ impl FiveBar {
             ::overact::ActuatorGroup::All,
         )?;
         let t4 = (L_2_SQUARED - L_2 * t3) / t3;
-        ::overact::guard::reach(t4, "left")?;
+        ::overact::guard::reach(t4, 0.10028325483901489, "left")?;
         let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
             l_1_c1_minus_half_left + 0.5 * t1 - t2 * t5,
@@ -289,11 +289,11 @@ impl FiveBar {
     /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 4 arc tangents, 4 guards, 2 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -306,7 +306,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -319,7 +319,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -354,11 +354,11 @@ impl FiveBar {
     /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 2 arc tangents, 4 guards, 1 negation, 48 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -371,7 +371,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -382,7 +382,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -408,12 +408,14 @@ impl FiveBar {
     /// 67 operations (23 additions, 39 multiplications, 5 divisions), 2 square roots, 2 trigonometric pairs, 2 arc tangents, 7 guards, 1 negation, 73 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 2],
         actuators: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -430,7 +432,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -445,7 +447,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
@@ -489,11 +491,11 @@ impl FiveBar {
     /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 41 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -506,7 +508,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -521,7 +523,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -550,12 +552,12 @@ impl FiveBar {
     /// 8 operations (2 additions, 4 multiplications, 2 divisions), 4 trigonometric pairs, 2 guards, 10 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         let q1_plus_q2_left = joints[0] + joints[1];
@@ -587,11 +589,11 @@ impl FiveBar {
     /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 7 guards, 2 negations, 49 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -616,14 +618,14 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
@@ -656,12 +658,12 @@ impl FiveBar {
     /// 14 operations (6 additions, 8 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 14 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_2
@@ -695,12 +697,12 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -714,12 +716,12 @@ impl FiveBar {
     /// 6 operations (2 additions, 4 multiplications, 0 divisions), 2 trigonometric pairs, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
         let q1_plus_q2_left = joints[0] + joints[1];
@@ -743,12 +745,12 @@ impl FiveBar {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 2 trigonometric pairs, 2 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// half / 2
         const HALF_HALF: ::core::primitive::f64 = 0.05;
         // --- sines and cosines
@@ -770,12 +772,12 @@ impl FiveBar {
     /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 59 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -788,7 +790,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -812,7 +814,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -845,14 +847,16 @@ impl FiveBar {
     /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 99 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -868,7 +872,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -903,7 +907,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -946,13 +950,13 @@ impl FiveBar {
     /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 55 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -966,7 +970,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -981,7 +985,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
@@ -1023,16 +1027,16 @@ impl FiveBar {
     /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 89 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist),
-                ("actuator_accelerations", actuator_accelerations),
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         /// half
@@ -1049,7 +1053,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -1064,7 +1068,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
@@ -1135,7 +1139,7 @@ impl FiveBar {
     /// 194 operations (55 additions, 132 multiplications, 7 divisions), 2 square roots, 4 signs, 6 guards, 10 negations, 152 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1158,8 +1162,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -1185,7 +1191,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -1196,7 +1202,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -1376,7 +1382,7 @@ impl FiveBar {
     /// 161 operations (43 additions, 116 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 124 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -1402,10 +1408,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -1601,7 +1607,7 @@ impl FiveBar {
     /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -1627,10 +1633,10 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -1659,7 +1665,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -1670,7 +1676,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -1884,7 +1890,7 @@ impl FiveBar {
     /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 12 negations, 156 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1907,8 +1913,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -1943,7 +1951,7 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -1955,7 +1963,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -2122,7 +2130,7 @@ impl FiveBar {
     /// 153 operations (48 additions, 102 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 133 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2148,10 +2156,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -2335,7 +2343,7 @@ impl FiveBar {
     /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 189 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2361,10 +2369,10 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 25]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -2411,7 +2419,7 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -2423,7 +2431,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -2600,7 +2608,7 @@ impl FiveBar {
     /// 166 operations (47 additions, 113 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 8 negations, 131 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2623,8 +2631,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -2648,7 +2658,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -2659,7 +2669,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -2795,7 +2805,7 @@ impl FiveBar {
     /// 129 operations (33 additions, 94 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2821,10 +2831,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / l_1
@@ -2964,7 +2974,7 @@ impl FiveBar {
     /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2990,10 +3000,10 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -3020,7 +3030,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -3031,7 +3041,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -3190,7 +3200,7 @@ impl FiveBar {
     /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 11 negations, 144 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3213,8 +3223,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -3253,7 +3265,7 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -3265,7 +3277,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -3402,7 +3414,7 @@ impl FiveBar {
     /// 135 operations (42 additions, 90 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 121 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -3428,10 +3440,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / l_1
@@ -3583,7 +3595,7 @@ impl FiveBar {
     /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 177 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3609,10 +3621,10 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 19]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -3661,7 +3673,7 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -3673,7 +3685,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
@@ -3819,12 +3831,12 @@ impl FiveBar {
     /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 6 guards, 49 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -3849,14 +3861,14 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
@@ -3882,12 +3894,12 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::core::result::Result::Ok([torques[0], torques[1]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3903,17 +3915,17 @@ impl FiveBar {
     /// 203 operations (82 additions, 113 multiplications, 8 divisions), 2 square roots, 4 signs, 7 guards, 203 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -3934,7 +3946,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -3987,7 +3999,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
@@ -4092,7 +4104,7 @@ impl FiveBar {
     /// 186 operations (72 additions, 108 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 192 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -4100,10 +4112,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("parameters", parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -4261,7 +4273,7 @@ impl FiveBar {
     /// 230 operations (92 additions, 130 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 233 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -4269,11 +4281,11 @@ impl FiveBar {
         parameters: &[::core::primitive::f64; 25],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
-                ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("parameters", parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -4297,7 +4309,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
@@ -4318,7 +4330,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
@@ -4474,17 +4486,17 @@ impl FiveBar {
     /// 182 operations (70 additions, 99 multiplications, 13 divisions), 2 square roots, 4 signs, 7 guards, 182 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -4505,7 +4517,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let a1_y_left = 49.05 * l1_x_left;
@@ -4555,7 +4567,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
@@ -4648,7 +4660,7 @@ impl FiveBar {
     /// 146 operations (52 additions, 88 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 152 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -4656,10 +4668,10 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         /// 1 / l_1
@@ -4795,7 +4807,7 @@ impl FiveBar {
     /// 210 operations (80 additions, 122 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 213 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -4803,11 +4815,11 @@ impl FiveBar {
         base_parameters: &[::core::primitive::f64; 19],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations),
-                ("base_parameters", base_parameters), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("base_parameters", base_parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -4831,7 +4843,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
@@ -4857,7 +4869,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
@@ -4994,12 +5006,14 @@ impl FiveBar {
     /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -5016,7 +5030,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
@@ -5036,7 +5050,7 @@ impl FiveBar {
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -5097,13 +5111,13 @@ impl FiveBar {
     /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -5119,7 +5133,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
@@ -5137,7 +5151,7 @@ impl FiveBar {
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -5200,14 +5214,16 @@ impl FiveBar {
     /// 179 operations (71 additions, 102 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 179 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// half
@@ -5227,7 +5243,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
@@ -5290,7 +5306,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
@@ -5370,14 +5386,17 @@ impl FiveBar {
     /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("base_parameters", base_parameters, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// half
@@ -5399,7 +5418,7 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
@@ -5460,7 +5479,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
@@ -5534,19 +5553,20 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 251 operations (101 additions, 137 multiplications, 13 divisions), 2 square roots, 4 signs, 8 guards, 251 intermediates.
+    /// 251 operations (101 additions, 137 multiplications, 13 divisions), 2 square roots, 4 signs, 11 guards, 251 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -5618,14 +5638,14 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let minus_g1_vx_left = l2_x_left / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -5738,8 +5758,12 @@ impl FiveBar {
                 + parameters[24];
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
             ::overact::guard::mass(pivot_2)?;
+            ::overact::guard::size(l_2_1, 1e100)?;
             let t3 = t2 / pivot_2;
-            ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+            let t4 = t1 / mass_1_1 - l_2_1 * t3;
+            ::overact::guard::size(t4, 1e100)?;
+            ::overact::guard::size(t3, 1e100)?;
+            ::core::result::Result::Ok([t4, t3])
         })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -5752,20 +5776,20 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 220 operations (83 additions, 121 multiplications, 16 divisions), 2 square roots, 4 signs, 8 guards, 220 intermediates.
+    /// 220 operations (83 additions, 121 multiplications, 16 divisions), 2 square roots, 4 signs, 11 guards, 220 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -5831,13 +5855,13 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
             ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
             ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
             ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
             let g2_vx_left = l1_x_left / det_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -5939,8 +5963,12 @@ impl FiveBar {
                 + base_parameters[0];
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
             ::overact::guard::mass(pivot_2)?;
+            ::overact::guard::size(l_2_1, 1e100)?;
             let t3 = t2 / pivot_2;
-            ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+            let t4 = t1 / mass_1_1 - l_2_1 * t3;
+            ::overact::guard::size(t4, 1e100)?;
+            ::overact::guard::size(t3, 1e100)?;
+            ::core::result::Result::Ok([t4, t3])
         })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -5954,23 +5982,25 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::core::result::Result::Ok([torques[0], torques[1]])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
-    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+        ::overact::guard::within(
+            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
+        )?;
         if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
             return ::core::result::Result::Ok(pose);
         }

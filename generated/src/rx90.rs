@@ -27,8 +27,8 @@
 /// | `mass_matrix_base` | 226, 5 sc |  |
 /// | `bias` | 491, 5 sc, 6 sg |  |
 /// | `bias_base` | 470, 5 sc, 6 sg |  |
-/// | `forward_dynamics` | 884, 5 sc, 6 sg, 6 gd |  |
-/// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 6 gd |  |
+/// | `forward_dynamics` | 884, 5 sc, 6 sg, 20 gd |  |
+/// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 18 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -314,11 +314,11 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joints(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
         ])
@@ -333,11 +333,11 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
         ])
@@ -352,11 +352,11 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_jacobian(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints)])?;
+        ::overact::guard::within(&[("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
@@ -374,13 +374,13 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joint_velocities(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("joint_velocities", joint_velocities)],
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9)],
         )?;
         ::core::result::Result::Ok([
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
@@ -399,16 +399,16 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn joint_accelerations(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         ::core::result::Result::Ok([
@@ -427,13 +427,15 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn twist_from_actuators(
         joints: &[::core::primitive::f64; 6],
         actuator_velocities: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("actuator_velocities", actuator_velocities)],
+        ::overact::guard::within(
+            &[
+                ("joints", joints, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+            ],
         )?;
         ::core::result::Result::Ok([
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
@@ -452,16 +454,16 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn acceleration_from_actuators(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         actuator_accelerations: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("actuator_accelerations", actuator_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         ::core::result::Result::Ok([
@@ -482,7 +484,7 @@ impl Rx90 {
     /// 623 operations (271 additions, 352 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 51 negations, 497 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_platform(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -505,10 +507,10 @@ impl Rx90 {
         joint_accelerations: &[::core::primitive::f64; 6],
         output: &mut [[::core::primitive::f64; 73]; 6],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -1075,7 +1077,7 @@ impl Rx90 {
     /// 601 operations (253 additions, 348 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 27 negations, 496 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn idm_red_platform_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1098,10 +1100,10 @@ impl Rx90 {
         joint_accelerations: &[::core::primitive::f64; 6],
         output: &mut [[::core::primitive::f64; 58]; 6],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -1584,12 +1586,14 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_platform(
         joints: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
+        )?;
         ::core::result::Result::Ok([
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
         ])
@@ -1607,17 +1611,18 @@ impl Rx90 {
     /// 548 operations (281 additions, 267 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 552 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_dynamics(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations), ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -1930,17 +1935,18 @@ impl Rx90 {
     /// 522 operations (260 additions, 262 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 526 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn inverse_dynamics_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
         base_parameters: &[::core::primitive::f64; 58],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("joint_accelerations", joint_accelerations), ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("joint_accelerations", joint_accelerations, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -2268,12 +2274,14 @@ impl Rx90 {
     /// 244 operations (126 additions, 118 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 233 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn mass_matrix(
         joints: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("parameters", parameters, 1e12)],
+        )?;
         ::overact::widest(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
@@ -2474,13 +2482,13 @@ impl Rx90 {
     /// 226 operations (110 additions, 116 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 215 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn mass_matrix_base(
         joints: &[::core::primitive::f64; 6],
         base_parameters: &[::core::primitive::f64; 58],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("joints", joints), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("base_parameters", base_parameters, 1e12)],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// d3 = rl4
@@ -2673,16 +2681,16 @@ impl Rx90 {
     /// 491 operations (245 additions, 246 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 495 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn bias(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -2989,16 +2997,16 @@ impl Rx90 {
     /// 470 operations (225 additions, 245 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 474 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn bias_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         base_parameters: &[::core::primitive::f64; 58],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities),
-                ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -3317,20 +3325,20 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 888 intermediates.
+    /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 20 guards, 888 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
-                ("parameters", parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("torques", torques, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -3838,12 +3846,26 @@ impl Rx90 {
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
             ::overact::guard::mass(pivot_6)?;
+            ::overact::guard::size(inv_pivot_1, 1e100)?;
+            ::overact::guard::size(inv_pivot_2, 1e100)?;
+            ::overact::guard::size(inv_pivot_3, 1e100)?;
+            ::overact::guard::size(inv_pivot_4, 1e100)?;
+            ::overact::guard::size(inv_pivot_5, 1e100)?;
+            ::overact::guard::size(pivot_3, 1e100)?;
+            ::overact::guard::size(pivot_4, 1e100)?;
+            ::overact::guard::size(pivot_5, 1e100)?;
+            ::overact::guard::size(pivot_6, 1e100)?;
             let t6 = t5 / pivot_6;
+            ::overact::guard::size(t6, 1e100)?;
             let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
+            ::overact::guard::size(t7, 1e100)?;
             let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
+            ::overact::guard::size(t8, 1e100)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+            ::overact::guard::size(t9, 1e100)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
+            ::overact::guard::size(t10, 1e100)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
             ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
@@ -3859,20 +3881,20 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 859 intermediates.
+    /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 18 guards, 859 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
         base_parameters: &[::core::primitive::f64; 58],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
-                ("base_parameters", base_parameters),
+                ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
+                ("torques", torques, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -4382,12 +4404,24 @@ impl Rx90 {
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
             ::overact::guard::mass(pivot_6)?;
+            ::overact::guard::size(inv_pivot_1, 1e100)?;
+            ::overact::guard::size(inv_pivot_2, 1e100)?;
+            ::overact::guard::size(inv_pivot_3, 1e100)?;
+            ::overact::guard::size(pivot_3, 1e100)?;
+            ::overact::guard::size(pivot_4, 1e100)?;
+            ::overact::guard::size(pivot_5, 1e100)?;
+            ::overact::guard::size(pivot_6, 1e100)?;
             let t6 = t5 / pivot_6;
+            ::overact::guard::size(t6, 1e100)?;
             let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
+            ::overact::guard::size(t7, 1e100)?;
             let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
+            ::overact::guard::size(t8, 1e100)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+            ::overact::guard::size(t9, 1e100)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
+            ::overact::guard::size(t10, 1e100)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
             ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
@@ -4404,12 +4438,14 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn project_torques(
         joints: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::overact::guard::within(
+            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
+        )?;
         ::core::result::Result::Ok([
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
         ])
@@ -4417,12 +4453,14 @@ impl Rx90 {
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
     ///
     /// # Errors
-    /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.
+    /// An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+        ::overact::guard::within(
+            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
+        )?;
         ::core::result::Result::Ok(*actuators)
     }
 }

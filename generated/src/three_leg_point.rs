@@ -28,30 +28,30 @@
 /// | `acceleration_from_actuators` | 162, 3 √, 11 gd |  |
 /// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 21 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators` | 267, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 16 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 32 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 21 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 16 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 32 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 10 gd |  |
 /// | `inverse_dynamics` | 291, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_from_joints` | 255, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 362, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `inverse_dynamics_from_actuators` | 362, 4 √, 2 sc, 6 sg, 17 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `inverse_dynamics_base` | 268, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 233, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 15 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `inverse_dynamics_base_from_actuators` | 340, 4 √, 2 sc, 6 sg, 17 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
 /// | `bias` | 227, 3 √, 6 sg, 9 gd |  |
 /// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
-/// | `forward_dynamics` | 359, 3 √, 6 sg, 11 gd; in 4 lanes 12 + 3 x 127 |  |
-/// | `forward_dynamics_base` | 293, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics` | 359, 3 √, 6 sg, 14 gd; in 4 lanes 12 + 3 x 127 |  |
+/// | `forward_dynamics_base` | 293, 3 √, 6 sg, 13 gd |  |
 /// | `inverse_dynamics_preloaded` | 317, 4 √, 6 sg, 11 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
@@ -262,11 +262,11 @@ impl ThreeLegPoint {
     /// 29 operations (13 additions, 15 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 32 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators)])?;
+        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -292,7 +292,7 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let t4 = (L_1_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, "leg1")?;
+        ::overact::guard::reach(t4, 0.0833333333038058, "leg1")?;
         let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
             0.5 * t1 - l_1_s1_leg1 + t2 * t5, radius_plus_l_1_c1_leg1 - 0.5 * t2 + t1 * t5,
@@ -308,11 +308,11 @@ impl ThreeLegPoint {
     /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 6 arc tangents, 6 guards, 3 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1²
@@ -326,7 +326,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -343,7 +343,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
@@ -354,7 +354,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -397,11 +397,11 @@ impl ThreeLegPoint {
     /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 3 arc tangents, 6 guards, 3 negations, 73 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1²
@@ -413,7 +413,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -428,7 +428,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
@@ -437,7 +437,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -467,12 +467,14 @@ impl ThreeLegPoint {
     /// 129 operations (49 additions, 72 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 2],
         actuators: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("actuators", actuators)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -493,7 +495,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -512,7 +514,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -529,7 +531,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -594,11 +596,11 @@ impl ThreeLegPoint {
     /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 9 guards, 3 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -614,7 +616,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -632,7 +634,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -647,7 +649,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -678,12 +680,12 @@ impl ThreeLegPoint {
     /// 24 operations (7 additions, 14 multiplications, 3 divisions), 6 trigonometric pairs, 3 guards, 3 negations, 27 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -725,11 +727,11 @@ impl ThreeLegPoint {
     /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 11 guards, 105 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -745,7 +747,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -765,7 +767,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -782,7 +784,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -836,12 +838,12 @@ impl ThreeLegPoint {
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 6 trigonometric pairs, 4 negations, 45 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -888,12 +890,12 @@ impl ThreeLegPoint {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         ::core::result::Result::Ok([
             [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0],
         ])
@@ -909,12 +911,12 @@ impl ThreeLegPoint {
     /// 21 operations (7 additions, 14 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 21 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -944,12 +946,12 @@ impl ThreeLegPoint {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite.
+    /// An input that is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         // --- sines and cosines
@@ -972,12 +974,12 @@ impl ThreeLegPoint {
     /// 93 operations (39 additions, 48 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1²
@@ -989,7 +991,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -1013,7 +1015,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -1036,7 +1038,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -1066,14 +1068,16 @@ impl ThreeLegPoint {
     /// 161 operations (64 additions, 91 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 158 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// radius / 2
@@ -1089,7 +1093,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -1126,7 +1130,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -1167,7 +1171,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -1212,13 +1216,13 @@ impl ThreeLegPoint {
     /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 11 guards, 106 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -1235,7 +1239,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -1253,7 +1257,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -1268,7 +1272,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -1322,16 +1326,16 @@ impl ThreeLegPoint {
     /// 162 operations (57 additions, 97 multiplications, 8 divisions), 3 square roots, 11 guards, 163 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist),
-                ("actuator_accelerations", actuator_accelerations),
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -1354,7 +1358,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -1373,7 +1377,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -1389,7 +1393,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -1488,7 +1492,7 @@ impl ThreeLegPoint {
     /// 244 operations (78 additions, 160 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 26 negations, 195 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1511,8 +1515,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -1537,7 +1543,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -1553,7 +1559,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -1564,7 +1570,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -1774,7 +1780,7 @@ impl ThreeLegPoint {
     /// 212 operations (65 additions, 144 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 24 negations, 170 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -1800,10 +1806,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -2028,11 +2034,11 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 19 negations, 286 intermediates.
+    /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 21 guards, 19 negations, 286 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2058,10 +2064,10 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -2090,7 +2096,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -2105,7 +2111,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -2116,7 +2122,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -2236,8 +2242,10 @@ impl ThreeLegPoint {
             output[1][29] = -(t2_leg3 * t4_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -2247,8 +2255,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
             let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
@@ -2256,8 +2266,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -2305,14 +2317,20 @@ impl ThreeLegPoint {
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
-            let inv_l_1_dvx = INV_L_1 * dvx;
-            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][7] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
                 + minus_g2_vx_leg1 * minus_a2_x_leg1); // my_2_leg1
             output[1][7] = g1_vy_leg1 * inv_l_1_a_on_f2_leg1
                 - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
+            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+            output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
+            output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
+            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = zz_2_leg1_on_vy;
+            let inv_l_1_dvx = INV_L_1 * dvx;
+            output[0][6] = inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
+            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             // --- leg2
             let rate_dot_1_leg2 = k_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
@@ -2324,6 +2342,8 @@ impl ThreeLegPoint {
             let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_vx;
             output[0][16] = inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx); // mx_2_leg2
+            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
+                - g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             // --- leg3
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
@@ -2335,15 +2355,8 @@ impl ThreeLegPoint {
             let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
             output[0][25] = zz_2_leg3_on_vx;
             output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
-            output[1][17] = g1_vy_leg2 * a_on_f2_leg2
-                - g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             output[1][27] = minus_g2_vy_leg3 * a_on_f1_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
-            let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
-            output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
-            output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
-            let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = zz_2_leg1_on_vy;
             let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
             output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
@@ -2354,7 +2367,6 @@ impl ThreeLegPoint {
             output[1][21] = -minus_zz_1_leg3_on_vy; // ia_1_leg3
             let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
             output[1][25] = zz_2_leg3_on_vy;
-            output[0][8] = L_1_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
             let inv_l_1_dvy = INV_L_1 * dvy;
             output[1][6] = inv_l_1_dvy
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy); // mx_2_leg1
@@ -2383,7 +2395,7 @@ impl ThreeLegPoint {
     /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 20 negations, 228 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2406,8 +2418,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -2436,7 +2450,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -2452,7 +2466,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -2461,7 +2475,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -2687,7 +2701,7 @@ impl ThreeLegPoint {
     /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 16 negations, 199 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -2713,10 +2727,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -2940,11 +2954,11 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 20 negations, 321 intermediates.
+    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 32 guards, 20 negations, 321 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2970,10 +2984,10 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 31]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -3008,7 +3022,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -3024,7 +3038,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -3033,7 +3047,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -3149,9 +3163,23 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][19] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            ); // fs_2_leg2
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            ); // fs_2_leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -3161,8 +3189,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -3177,8 +3207,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -3195,42 +3227,64 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-            // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
-            // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
             output[0][0] = -minus_rate_dot_1_leg1; // zz_1_leg1
             output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
+            // --- leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            ::overact::guard::size(minus_zz_2_leg1_on_q1_leg1, 1e100)?;
             output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
-            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
-                + minus_vy_by_a1 * dvy;
-            output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
-            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
-            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
-                - t1_platform; // mx_2_leg1
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            let my_2_leg1_on_q1_leg1 = INV_L_1 * a_on_f2_leg1
+                + g2_a1_leg1 * minus_a2_x_leg1;
+            ::overact::guard::size(my_2_leg1_on_q1_leg1, 1e100)?;
+            output[0][7] = my_2_leg1_on_q1_leg1;
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
+            // --- leg2
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_q1_leg1;
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            let my_2_leg2_on_q1_leg2 = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = my_2_leg2_on_q1_leg2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            ::overact::guard::size(minus_zz_2_leg2_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(my_2_leg2_on_q1_leg2, 1e100)?;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
             // --- leg3
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            ::overact::guard::size(zz_1_leg3_on_q1_leg1, 1e100)?;
             output[0][20] = zz_1_leg3_on_q1_leg1;
             output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            ::overact::guard::size(zz_1_leg3_on_q1_leg2, 1e100)?;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -3239,65 +3293,49 @@ impl ThreeLegPoint {
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
             let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            ::overact::guard::size(zz_2_leg3_on_q1_leg1, 1e100)?;
             output[0][25] = zz_2_leg3_on_q1_leg1;
-            output[0][26] = -(t1_platform
-                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[0][15] = zz_2_leg2_on_q1_leg1;
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
-            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
-                + minus_vy_by_a2 * dvy;
-            output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
-            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-            output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-            output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
-            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
-            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            output[1][16] = L_1
-                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][19] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
-            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][29] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             ); // fs_2_leg3
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
-            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
+            // --- platform
+            let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
+                + minus_vy_by_a1 * dvy;
+            output[0][30] = -minus_m_platform_on_q1_leg1; // m_platform
+            let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+            output[0][6] = L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1)
+                - t1_platform; // mx_2_leg1
+            let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx
+                + minus_vy_by_a2 * dvy;
+            output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
+            let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
+            output[1][16] = L_1
+                * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            ::overact::guard::size(zz_2_leg3_on_q1_leg2, 1e100)?;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
+            let minus_my_2_leg3_on_q1_leg2 = g1_a2_leg3 * a_on_f2_leg3
+                + g2_a2_leg3 * a_on_f1_leg3;
+            output[1][27] = -minus_my_2_leg3_on_q1_leg2; // my_2_leg3
+            let minus_my_2_leg3_on_q1_leg1 = g1_a1_leg3 * a_on_f2_leg3
+                + g2_a1_leg3 * a_on_f1_leg3;
+            ::overact::guard::size(minus_my_2_leg3_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(minus_my_2_leg3_on_q1_leg2, 1e100)?;
+            output[0][27] = -minus_my_2_leg3_on_q1_leg1; // my_2_leg3
+            output[0][29] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            ); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
@@ -3316,7 +3354,7 @@ impl ThreeLegPoint {
     /// 218 operations (66 additions, 145 multiplications, 7 divisions), 3 square roots, 6 signs, 9 guards, 20 negations, 182 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3339,8 +3377,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -3365,7 +3405,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -3381,7 +3421,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -3392,7 +3432,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -3567,7 +3607,7 @@ impl ThreeLegPoint {
     /// 187 operations (53 additions, 131 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 18 negations, 157 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -3593,10 +3633,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -3780,11 +3820,11 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 15 negations, 272 intermediates.
+    /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 21 guards, 15 negations, 272 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3810,10 +3850,10 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -3842,7 +3882,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -3858,7 +3898,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -3869,7 +3909,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -3987,8 +4027,10 @@ impl ThreeLegPoint {
             output[1][21] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -3998,8 +4040,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
             let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
@@ -4007,8 +4051,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4043,28 +4089,16 @@ impl ThreeLegPoint {
             output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             // --- leg1
+            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
+                - minus_bias_a_on_f1_leg1;
+            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
+            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
             output[0][13] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
-                - minus_bias_a_on_f1_leg1;
-            let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
-            output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
-            let rate_dot_1_leg2 = k_leg2
-                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
-            output[0][2] = g1_vx_leg2 * rate_dot_1_leg2; // zz_1_leg2R
-            let minus_rate_dot_2_leg3 = k_leg3
-                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][16] = -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
@@ -4073,10 +4107,22 @@ impl ThreeLegPoint {
                 - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            let rate_dot_1_leg2 = k_leg2
+                * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+            output[0][2] = g1_vx_leg2 * rate_dot_1_leg2; // zz_1_leg2R
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            output[0][14] = minus_g2_vx_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             output[1][17] = g1_vy_leg2 * a_on_f2_leg2
                 - g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             output[1][2] = g1_vy_leg2 * rate_dot_1_leg2; // zz_1_leg2R
             output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            let minus_rate_dot_2_leg3 = k_leg3
+                * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            output[0][15] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][18] = minus_g2_vy_leg3 * a_on_f1_leg3
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
@@ -4097,7 +4143,7 @@ impl ThreeLegPoint {
     /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 13 negations, 216 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4120,8 +4166,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
@@ -4154,7 +4202,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -4170,7 +4218,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -4179,7 +4227,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -4376,7 +4424,7 @@ impl ThreeLegPoint {
     /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 10 negations, 187 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -4402,10 +4450,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12),
             ],
         )?;
         ::overact::roomiest(#[inline(always)] || {
@@ -4600,11 +4648,11 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 16 guards, 13 negations, 309 intermediates.
+    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 32 guards, 13 negations, 309 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4630,10 +4678,10 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
         output: &mut [[::core::primitive::f64; 22]; 2],
     ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -4672,7 +4720,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
@@ -4688,7 +4736,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
@@ -4697,7 +4745,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -4813,9 +4861,23 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            ); // fs_2_leg2
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            ); // fs_2_leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -4825,8 +4887,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -4841,8 +4905,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4859,78 +4925,87 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-            // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
-            // --- leg1
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
             output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            ::overact::guard::size(zz_1_leg3_on_q1_leg1, 1e100)?;
+            output[0][3] = zz_1_leg3_on_q1_leg1; // zz_1_leg3R
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
+            let my_2_leg1_on_q1_leg1 = INV_L_1 * a_on_f2_leg1
+                + g2_a1_leg1 * minus_a2_x_leg1;
+            output[0][16] = my_2_leg1_on_q1_leg1;
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][13] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1R
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            let my_2_leg2_on_q1_leg2 = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
+            output[1][17] = my_2_leg2_on_q1_leg2;
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][14] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2R
+            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy); // m_platformR
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
                 - minus_bias_a_on_f2_leg3;
-            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy); // m_platformR
-            output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy); // m_platformR
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            output[0][15] = zz_2_leg3_on_q1_leg1; // zz_2_leg3R
+            output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy); // m_platformR
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
-            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
-            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             output[1][21] = ::overact::math::wide::signed(
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             ); // fs_2_leg3
-            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][21] = ::overact::math::wide::signed(
+                g2_a1_leg3 - g1_a1_leg3,
+                qd_2_leg3,
+            ); // fs_2_leg3
+            let minus_my_2_leg3_on_q1_leg1 = g1_a1_leg3 * a_on_f2_leg3
+                + g2_a1_leg3 * a_on_f1_leg3;
+            output[0][18] = -minus_my_2_leg3_on_q1_leg1; // my_2_leg3
+            let minus_my_2_leg3_on_q1_leg2 = g1_a2_leg3 * a_on_f2_leg3
+                + g2_a2_leg3 * a_on_f1_leg3;
+            output[1][18] = -minus_my_2_leg3_on_q1_leg2; // my_2_leg3
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            ::overact::guard::size(zz_1_leg3_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg1_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(minus_zz_2_leg2_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(zz_2_leg3_on_q1_leg1, 1e100)?;
+            output[1][3] = zz_1_leg3_on_q1_leg2; // zz_1_leg3R
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            ::overact::guard::size(zz_2_leg3_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(my_2_leg1_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(my_2_leg2_on_q1_leg2, 1e100)?;
+            ::overact::guard::size(minus_my_2_leg3_on_q1_leg1, 1e100)?;
+            ::overact::guard::size(minus_my_2_leg3_on_q1_leg2, 1e100)?;
+            output[1][15] = zz_2_leg3_on_q1_leg2; // zz_2_leg3R
             ::core::result::Result::Ok(())
         })
     }
@@ -4945,12 +5020,12 @@ impl ThreeLegPoint {
     /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 9 guards, 81 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -4985,13 +5060,13 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
@@ -5000,7 +5075,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -5033,12 +5108,12 @@ impl ThreeLegPoint {
     /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 10 guards, 89 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -5083,16 +5158,16 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
@@ -5132,17 +5207,17 @@ impl ThreeLegPoint {
     /// 291 operations (120 additions, 162 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 293 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -5165,7 +5240,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -5221,7 +5296,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -5279,7 +5354,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -5388,7 +5463,7 @@ impl ThreeLegPoint {
     /// 255 operations (101 additions, 148 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 264 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -5396,10 +5471,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("parameters", parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -5590,11 +5665,11 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 362 operations (153 additions, 189 multiplications, 20 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 365 intermediates.
+    /// 362 operations (153 additions, 189 multiplications, 20 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 2 negations, 365 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -5602,11 +5677,11 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
-                ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("parameters", parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -5630,7 +5705,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -5649,7 +5724,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -5665,7 +5740,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -5868,7 +5943,9 @@ impl ThreeLegPoint {
             let t2_platform = t5_leg3 + force_x_platform;
             let t3 = (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform)
                 / pivot_2;
+            ::overact::guard::size(t3, 1e100)?;
             let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
+            ::overact::guard::size(t4, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
                 g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
@@ -5888,17 +5965,17 @@ impl ThreeLegPoint {
     /// 268 operations (105 additions, 155 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 270 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 22],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -5921,7 +5998,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -5975,7 +6052,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -6029,7 +6106,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -6132,7 +6209,7 @@ impl ThreeLegPoint {
     /// 233 operations (86 additions, 141 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 242 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -6140,10 +6217,10 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 22],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("joints", joints), ("twist", twist),
-                ("acceleration", acceleration), ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
+                ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -6326,11 +6403,11 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 340 operations (138 additions, 191 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 15 guards, 2 negations, 343 intermediates.
+    /// 340 operations (138 additions, 191 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 2 negations, 343 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -6338,11 +6415,11 @@ impl ThreeLegPoint {
         base_parameters: &[::core::primitive::f64; 22],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
-                ("actuator_accelerations", actuator_accelerations),
-                ("base_parameters", base_parameters), ("start", start),
+                ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
+                ("actuator_accelerations", actuator_accelerations, 1e12),
+                ("base_parameters", base_parameters, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
@@ -6366,7 +6443,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -6386,7 +6463,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -6403,7 +6480,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -6592,7 +6669,9 @@ impl ThreeLegPoint {
             let force_x_platform = dvx * base_parameters[0];
             let t5 = t4 + force_x_platform;
             let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
+            ::overact::guard::size(t6, 1e100)?;
             let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
+            ::overact::guard::size(t7, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
                 g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
@@ -6610,12 +6689,14 @@ impl ThreeLegPoint {
     /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
+        )?;
         ::overact::widest(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -6636,7 +6717,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -6664,7 +6745,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -6703,7 +6784,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -6785,13 +6866,13 @@ impl ThreeLegPoint {
     /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 22],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// radius / 2
@@ -6811,7 +6892,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -6835,7 +6916,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -6870,7 +6951,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -6949,14 +7030,16 @@ impl ThreeLegPoint {
     /// 227 operations (93 additions, 128 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 229 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// radius / 2
@@ -6978,7 +7061,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -7033,7 +7116,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7087,7 +7170,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -7158,14 +7241,17 @@ impl ThreeLegPoint {
     /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 22],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9),
+                ("base_parameters", base_parameters, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// radius / 2
@@ -7187,7 +7273,7 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -7244,7 +7330,7 @@ impl ThreeLegPoint {
                 + d_y_leg2 * d_y_leg2;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7297,7 +7383,7 @@ impl ThreeLegPoint {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -7367,21 +7453,22 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 360 intermediates.
+    /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 14 guards, 360 intermediates.
     /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 3 legs run side by side, in the lanes of vectors: 12 operations once, and 127 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("parameters", parameters, 1e12),
             ],
         )?;
         /// The function with its legs side by side, in vectors that are chosen when it runs.
@@ -7428,6 +7515,10 @@ impl ThreeLegPoint {
                     0.12249999999999998, 0.12249999999999998, 0.1224999999999999,
                 ];
                 /// What must not vanish, at home.
+                static HOME_1: [::core::primitive::f64; 3] = [
+                    0.2202040816326531, 0.2202040816326531, 0.22020408163265343,
+                ];
+                /// What must not vanish, at home.
                 static HOME_2: [::core::primitive::f64; 3] = [
                     0.057484236969798944, 0.057484236969798944, 0.057484236969798944,
                 ];
@@ -7469,7 +7560,13 @@ impl ThreeLegPoint {
                         at,
                     );
                     let h_squared_leg = L_1_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(&mut failed, h_squared_leg, &LEGS, at);
+                    ::overact::lanes::reach(
+                        &mut failed,
+                        h_squared_leg,
+                        &HOME_1,
+                        &LEGS,
+                        at,
+                    );
                     let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -7586,7 +7683,9 @@ impl ThreeLegPoint {
                     let l_2_1 = sums[1] * inv_pivot_1;
                     let pivot_2 = sums[2] - sums[1] * l_2_1;
                     ::overact::guard::mass(pivot_2)?;
+                    ::overact::guard::size(inv_pivot_1, 1e100)?;
                     let t1 = (sums[4] - l_2_1 * sums[3]) / pivot_2;
+                    ::overact::guard::size(t1, 1e100)?;
                     [inv_pivot_1 * sums[3] - l_2_1 * t1, t1]
                 };
                 ::core::result::Result::Ok(output)
@@ -7619,7 +7718,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -7672,7 +7771,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7724,7 +7823,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
@@ -7839,8 +7938,12 @@ impl ThreeLegPoint {
         let mass_2_2 = t8_leg3 + parameters[30];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
+        ::overact::guard::size(l_2_1, 1e100)?;
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
+        let t4 = t1 / mass_1_1 - l_2_1 * t3;
+        ::overact::guard::size(t4, 1e100)?;
+        ::overact::guard::size(t3, 1e100)?;
+        ::core::result::Result::Ok([t4, t3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -7852,20 +7955,20 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 293 operations (116 additions, 169 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 295 intermediates.
+    /// 293 operations (116 additions, 169 multiplications, 8 divisions), 3 square roots, 6 signs, 13 guards, 1 negation, 295 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 22],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("torques", torques),
-                ("base_parameters", base_parameters),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
+                ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -7980,17 +8083,17 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
@@ -8096,7 +8199,9 @@ impl ThreeLegPoint {
             let mass_2_2 = t5_leg3 + base_parameters[0];
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
             ::overact::guard::mass(pivot_2)?;
+            ::overact::guard::size(inv_pivot_1, 1e100)?;
             let t3 = (t2 - t1 * l_2_1) / pivot_2;
+            ::overact::guard::size(t3, 1e100)?;
             ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
         })
     }
@@ -8114,7 +8219,7 @@ impl ThreeLegPoint {
     /// 317 operations (124 additions, 185 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 318 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -8122,10 +8227,10 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(
+        ::overact::guard::within(
             &[
-                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
-                ("parameters", parameters), ("preload", preload),
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+                ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
         ::overact::widest(#[inline(always)] || {
@@ -8185,17 +8290,17 @@ impl ThreeLegPoint {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
             ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
             ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
             ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
             ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
             ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
             ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
@@ -8391,12 +8496,12 @@ impl ThreeLegPoint {
     /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 11 guards, 114 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -8412,7 +8517,7 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -8430,7 +8535,7 @@ impl ThreeLegPoint {
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -8444,7 +8549,7 @@ impl ThreeLegPoint {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -8499,11 +8604,11 @@ impl ThreeLegPoint {
     /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 11 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn null_space(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / (2 l_1)
@@ -8549,16 +8654,16 @@ impl ThreeLegPoint {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
         ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
@@ -8595,12 +8700,14 @@ impl ThreeLegPoint {
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.
     ///
     /// # Errors
-    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+        ::overact::guard::within(
+            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
+        )?;
         let closed = Self::pose_in_closed_form(actuators).ok();
         ::overact::forward::from_closed_form(
             closed,
