@@ -15,6 +15,9 @@ use overact_exact::{Number, Ratio};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
 
+/// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
+const MOST_JOINTS: usize = 200;
+
 /// Words that cannot name a type.
 const KEYWORDS: [&str; 51] = [
     "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
@@ -98,6 +101,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         .and_then(|item| platform::read(item, &scope));
     let shapes = shapes(table, &scope);
     let mut legs = legs(table, &shapes, &scope);
+    check_joint_count(table, name.as_ref(), &legs)?;
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
@@ -384,6 +388,24 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
             .label(format!("the actuators are {}", names.join(", ")))
             .help(help),
     );
+}
+
+/// Refuses robots with more joints than can be worked on, before their names are compared with one another.
+fn check_joint_count(
+    table: &Table<'_, '_>,
+    name: Option<&Spanned<String>>,
+    legs: &[Leg],
+) -> Option<()> {
+    let joints: usize = legs.iter().map(|leg| leg.joints.len()).sum();
+    if joints <= MOST_JOINTS {
+        return Some(());
+    }
+    let message = format!("the robot has {joints} joints, more than {MOST_JOINTS}");
+    let at = name.map(|name| name.span.clone());
+    let diagnostic = Diagnostic::global(Code::LEG_EMPTY_OR_LARGE, message).at(at);
+    let help = "describe it in parts, each as a robot of its own";
+    table.context.report(diagnostic.help(help));
+    None
 }
 
 /// Leg and joint names are joined by underscores, so two bodies can come by the same name.

@@ -221,30 +221,13 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
 /// How many times worse conditioned than the best choice independent coordinates may be.
 const WEAK: f64 = 1e3;
 
-/// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
-const JOINTS: usize = 200;
-
 /// Most independent joints of a leg: operations of its model grow with their square, the time of the search
 /// with the fourth power.
 const CHAIN: usize = 100;
 
-/// Reports legs without a joint, and robots with more joints than can be worked on; whether there are too many.
+/// Reports legs without a joint, or with more than can be worked on; whether there are too many.
 fn check_sizes(description: &Description, errors: &mut Diagnostics) -> bool {
     let mut is_too_large = false;
-    let joints: usize = description.legs.iter().map(|leg| leg.joints.len()).sum();
-    if joints > JOINTS {
-        is_too_large = true;
-        let message = format!("the robot has {joints} joints, more than {JOINTS}");
-        let help = "describe it in parts, each as a robot of its own";
-        errors.push(
-            Diagnostic::new(
-                Code::LEG_EMPTY_OR_LARGE,
-                message,
-                description.name.span.clone(),
-            )
-            .help(help),
-        );
-    }
     for leg in &description.legs {
         let own = leg.joints.iter().enumerate();
         let own = own.filter(|(at, joint)| joint.is_independent(*at)).count();

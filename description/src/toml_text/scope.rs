@@ -32,11 +32,21 @@ impl Names for Scope {
     }
 }
 
+/// Constants of a description, at most: each name is looked for among all before it.
+const MOST_CONSTANTS: usize = 2_000;
+
 impl Scope {
     /// The constants of `[constants]`, each of which may use those before it.
     pub(crate) fn constants(table: &Table<'_, '_>) -> Self {
         let mut scope = Self::default();
-        for item in table.items() {
+        let items = table.items();
+        if let Some(next) = items.get(MOST_CONSTANTS) {
+            let message = format!("there are more than {MOST_CONSTANTS} constants");
+            let diagnostic = Diagnostic::new(Code::FORMULA, message, next.key.span.clone());
+            let help = "take out those that are not used";
+            next.context.report(diagnostic.help(help));
+        }
+        for item in items.into_iter().take(MOST_CONSTANTS) {
             check_name(&item);
             let value = item.evaluate(&scope);
             scope.add(item.key.value.clone(), value);
