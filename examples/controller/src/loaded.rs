@@ -11,7 +11,7 @@
 ///
 /// | function | once | each step |
 /// |---|---|---|
-/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 17 gd |  |
 ///
 /// # Names
 ///
@@ -154,17 +154,19 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 481 intermediates.
+    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
@@ -185,7 +187,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -245,7 +247,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -297,7 +299,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -356,7 +358,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -477,7 +479,9 @@ impl DualV {
             )?;
             let t3 = t2 / pivot_3;
             let t4 = t1 / pivot_2 - l_3_2 * t3;
+            ::overact::guard::size(t4, 1e100)?;
             let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
+            ::overact::guard::size(t5, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
                 g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),

@@ -12,8 +12,8 @@
 /// | function | once | each step |
 /// |---|---|---|
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
-/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
+/// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 17 gd |  |
+/// | `project_torques` | 191, 4 √, 1 sc, 19 gd |  |
 ///
 /// # Names
 ///
@@ -157,11 +157,11 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -178,7 +178,7 @@ impl DualV {
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -187,7 +187,7 @@ impl DualV {
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -200,7 +200,7 @@ impl DualV {
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -209,7 +209,7 @@ impl DualV {
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -241,17 +241,19 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 481 intermediates.
+    /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(
-            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        ::overact::guard::within(
+            &[
+                ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
+            ],
         )?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
@@ -272,7 +274,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -332,7 +334,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -384,7 +386,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -443,7 +445,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -565,7 +567,9 @@ impl DualV {
             )?;
             let t3 = t2 / pivot_3;
             let t4 = t1 / pivot_2 - l_3_2 * t3;
+            ::overact::guard::size(t4, 1e100)?;
             let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
+            ::overact::guard::size(t5, 1e100)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
                 g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
@@ -583,15 +587,15 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 1 negation, 193 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::overact::widest(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
@@ -608,7 +612,7 @@ impl DualV {
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -620,7 +624,7 @@ impl DualV {
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
             ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -635,7 +639,7 @@ impl DualV {
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -647,7 +651,7 @@ impl DualV {
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
             ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -718,13 +722,17 @@ impl DualV {
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::core::result::Result::Ok([
-                g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
-                g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
-                g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
-                -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
-                    + minus_g1_wz_leg4 * t4),
-            ])
+            let t7 = g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4;
+            ::overact::guard::size(t7, 1e100)?;
+            let t8 = g1_wz_leg2 * t4
+                - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5);
+            ::overact::guard::size(t8, 1e100)?;
+            let t9 = g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4;
+            ::overact::guard::size(t9, 1e100)?;
+            let t10 = minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
+                + minus_g1_wz_leg4 * t4;
+            ::overact::guard::size(t10, 1e100)?;
+            ::core::result::Result::Ok([t7, t8, t9, -t10])
         })
     }
 }

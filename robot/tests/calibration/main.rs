@@ -200,7 +200,7 @@ fn encoder_offsets_of_robots_without_a_platform_are_calibrated() {
     let described = robot(&text("four_bar.toml"));
     let offset = 2e-3;
     let runs = described.experiment().expect("runs").runs(&[], &|_, _| {});
-    let run = runs.expect("virtual runs").remove(0);
+    let run = runs.expect("virtual runs").identified.remove(0);
     for scope in [
         CalibrationScope::Smallest,
         CalibrationScope::Offsets,
