@@ -268,8 +268,8 @@ fn short_runs_and_other_robots_are_errors() {
     assert_eq!(
         text,
         "run 1: the run has 1 actuator, the robot `pair` has 2\n  help: map one position and one torque column to each actuator\n\
-         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]\n\
-         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
+         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]; the run lasts 0.2 s: is the time in minutes? It has to be in seconds\n\
+         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
     );
 }
 

@@ -8,13 +8,14 @@ use std::{fs, path::Path};
 
 /// Robots of the default tier, which are identified in well below a second: with and without redundancy, with
 /// gravity and without.
-const CHEAP: [&str; 4] = ["emps", "five_bar", "scotch_yoke", "two_motor_axis"];
+const CHEAP: [&str; 3] = ["emps", "five_bar", "two_motor_axis"];
 
 /// Robots of the full tier that are accused still. The settings of the first are those of a slow measured run, with
 /// torques under the low-pass of the positions and no decimation, and do not suit its virtual one. The other's encoder
 /// does bias `zz_2R`, which instruments find: by about one deviation, the limit, so that the last digits of a
-/// simulation decide whether it is said.
-const ACCUSED: [&str; 2] = ["dvrk_mtm", "kuka_lwr"];
+/// simulation decide whether it is said. The errors of the Scotch yoke's encoder repeat with its motion, so that the test
+/// of Durbin, Wu and Hausman rejects (F = 23 on 3 and 24 degrees of freedom), though no parameter moves by 1 σ.
+const ACCUSED: [&str; 3] = ["dvrk_mtm", "kuka_lwr", "scotch_yoke"];
 
 /// What the verdict says against a robot's faultless experiment.
 fn accusations(path: &Path) -> Vec<String> {

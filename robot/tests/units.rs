@@ -64,8 +64,9 @@ fn slip(result: &Identification) -> (&str, f64, Option<&str>) {
     let [check] = checks[..] else {
         panic!("one check of units: {checks:?}");
     };
-    let first = &result.verdicts[0].reasons[0];
-    assert!(first.ends_with(&check.words), "{first}");
+    let reasons = &result.verdicts[0].reasons;
+    let is_reason = |reason: &String| reason.ends_with(&check.words);
+    assert!(reasons.iter().any(is_reason), "{reasons:?}");
     let (signal, factor) = (
         check.signal.expect("a signal"),
         check.factor.expect("a factor"),
@@ -81,8 +82,8 @@ fn right_units_have_no_check_of_units() {
 }
 
 #[test]
-fn time_in_milliseconds_microseconds_and_minutes_is_named() {
-    for factor in [1e3, 1e6, 1.0 / 60.0] {
+fn time_in_milliseconds_and_microseconds_is_named() {
+    for factor in [1e3, 1e6] {
         let result = identified(ARM, |signals| signals.frequency /= factor);
         assert_eq!(slip(&result), ("time", factor, None));
     }
@@ -104,7 +105,9 @@ fn time_in_milliseconds_is_named_in_the_document() {
 
 #[test]
 fn a_linear_axis_in_millimetres_is_named() {
-    let result = identified(AXIS, |signals| {
+    let described = AXIS.replace("instruments = \"simulated\"", "instruments = \"none\"");
+    assert_ne!(described, AXIS);
+    let result = identified(&described, |signals| {
         signals.positions.iter_mut().for_each(|q| *q *= 1e3);
     });
     assert_eq!(slip(&result), ("positions", 1e3, None));
@@ -125,7 +128,7 @@ fn angles_of_one_drive_in_milliradians_are_named_with_the_drive() {
 
 #[test]
 fn torques_in_mn_m_are_named_where_a_prior_contradicts_them() {
-    let prior = "\n[prior]\nzz_2 = 0.03\nmx_2 = 0.22\nia_2 = 0.02\nzz_1 = 0.08\nmx_1 = 0.45\nm_2 = \"1.8 kg\"\nia_1 = 0.05\n";
+    let prior = "\n[prior.values]\nzz_2 = 0.03\nmx_2 = 0.22\nia_2 = 0.02\nzz_1 = 0.08\nmx_1 = 0.45\nm_2 = \"1.8 kg\"\nia_1 = 0.05\n";
     let with_prior = ARM.replacen("\n# Which columns", &format!("{prior}\n# Which columns"), 1);
     assert_ne!(with_prior, ARM);
     let result = identified(&with_prior, |signals| {

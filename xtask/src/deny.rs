@@ -5,8 +5,9 @@ use crate::files::repository;
 use std::process::{Command, Stdio};
 
 /// Folders of all workspaces of this repository; each has a Cargo.lock of its own.
-const WORKSPACES: [&str; 5] = [
+const WORKSPACES: [&str; 6] = [
     ".",
+    "benchmarks/symplex",
     "examples/controller/firmware",
     "fleet",
     "page",

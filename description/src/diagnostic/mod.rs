@@ -6,11 +6,13 @@
 
 mod internal;
 mod render;
+mod spanned;
 mod suggestion;
 
 pub use internal::InternalError;
 pub use overact_core::{Code, Explanation};
 pub use render::{Located, visible};
+pub use spanned::Spanned;
 pub use suggestion::{did_you_mean, nearest};
 
 use std::ops::Range;

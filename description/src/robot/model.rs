@@ -1,26 +1,10 @@
 //! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
 
 use crate::diagnostic::Span;
+pub use crate::diagnostic::Spanned;
 use crate::expressions::formula::{Formula, Spring};
 use overact_core::StandardParameter;
 use overact_exact::{Angle, Number, Ratio};
-
-/// A value and where the description gives it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Spanned<T> {
-    /// The value.
-    pub value: T,
-    /// Its place; for a value that is left out, that of the table which could hold it.
-    pub span: Span,
-}
-
-impl<T> Spanned<T> {
-    /// A value at a place.
-    #[must_use]
-    pub const fn new(value: T, span: Span) -> Self {
-        Self { value, span }
-    }
-}
 
 /// A motion that a platform can have. Axes are 0, 1, 2 for x, y, z of the base frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -3,8 +3,8 @@
 //! A reader asks a [`Table`] for its keys and an [`Item`] for a type; what is missing, of the wrong
 //! type or left over is reported with its place, and `None` is the answer.
 
+use crate::diagnostic::Spanned;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
-use crate::robot::model::Spanned;
 use std::cell::RefCell;
 use toml::de::{DeTable, DeValue};
 

@@ -1,12 +1,12 @@
 //! The names that expressions may use, and typed values of expressions.
 
+use crate::diagnostic::Spanned;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::expressions::dimension::{Dimension, UNITS, unit};
 use crate::expressions::expression::{Failure, Meaning, Names, Quantity, evaluate, number};
 use crate::expressions::function::FUNCTIONS;
 use crate::expressions::scalar::Scalar;
 use crate::expressions::value::{Fault, Value};
-use crate::robot::model::Spanned;
 use crate::toml_text::reader::{Item, Table};
 use overact_exact::{Angle, Number};
 use toml::de::DeValue;

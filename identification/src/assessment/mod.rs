@@ -18,7 +18,6 @@ pub(crate) mod checks;
 pub(crate) mod evidence;
 mod explained;
 mod positions;
-mod rotation;
 pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;

@@ -2,7 +2,7 @@
 
 /// Sizes and limits of a description, by which the units of a log are judged.
 ///
-/// ```
+/// ```text
 /// use overact_identification::Scales;
 /// let scales = Scales { length: 0.45, torque: vec![20.0, 8.0], ..Scales::default() };
 /// assert_eq!(scales.sampling, None);

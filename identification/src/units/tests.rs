@@ -62,7 +62,8 @@ fn the_unit_that_makes_all_quantities_usual_is_named() {
     let torques = quantities(sampling, acceleration, density * 1e3);
     assert_eq!(unit(&torques, false), Some("mN m (or mN, mA)"));
     let positions = quantities(sampling, acceleration * 1e3, density / 1e3);
-    assert_eq!(unit(&positions, false), Some("mrad"));
+    // Degrees make these quantities usual, too, and come first.
+    assert_eq!(unit(&positions, false), Some("degrees"));
 }
 
 #[test]

@@ -34,6 +34,12 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
                     assert!(numbers.all(|x| x.is_finite()), "{case}: {one:?}, {other:?}");
                     answered += 1;
                 }
+                // Both round differently, so that a guard at its limit may hold for one alone.
+                (Ok(numbers), Err(error)) | (Err(error), Ok(numbers))
+                    if is_at_limit(&error.error) =>
+                {
+                    assert!(numbers.iter().all(|x| x.is_finite()), "{case}: {numbers:?}");
+                }
                 _ => panic!("{case}: compiled {of_compiled:?}, interpreted {of_interpreted:?}"),
             }
         }
@@ -112,7 +118,8 @@ fn forward_kinematics(
         };
         match (&one, &other) {
             (Err(one), Err(other)) => {
-                assert!(is_alike(&with_sample(one), &with_sample(other)), "{case}");
+                let is_same = is_alike(&with_sample(one), &with_sample(other));
+                assert!(is_same || is_at_limit(one) && is_at_limit(other), "{case}");
             }
             (Ok(one), Ok(other)) => {
                 assert!(one.iter().chain(other).all(|x| x.is_finite()), "{case}");
@@ -121,6 +128,14 @@ fn forward_kinematics(
         }
     }
     Ok(())
+}
+
+/// Whether the error is that of a guard on a determinant or radicand, whose limit depends on rounding.
+fn is_at_limit(error: &Error) -> bool {
+    matches!(
+        error,
+        Error::SingularLeg { .. } | Error::SingularPlatform { .. } | Error::OutOfReach { .. }
+    )
 }
 
 /// Random numbers that are alike whenever they are drawn.

@@ -22,6 +22,7 @@ mod relative_error;
 mod repeated;
 mod residual_correlation;
 mod reversals;
+mod rotation;
 pub(super) mod smoothing;
 mod suspected;
 mod torque_faults;

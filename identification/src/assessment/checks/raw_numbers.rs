@@ -4,11 +4,9 @@
 use overact::{Model, StandardParameter};
 
 use super::Context;
+use super::rotation;
 use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Grade},
-        rotation,
-    },
+    assessment::check::{About, Check, CheckKind, Grade},
     error::Error,
     kinematics::conditioning::couples,
     monitor::{Monitor, Suspicion, Trouble},

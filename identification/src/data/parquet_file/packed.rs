@@ -189,7 +189,7 @@ mod tests {
     fn pages_that_cannot_be_right_are_refused() {
         for (packing, packed) in both(9, b"0123456789") {
             let told = packing.unpacked(b"", &packed).expect_err("too large");
-            assert_eq!(told, "a page is larger than its column");
+            assert_eq!(told, "a page is larger than its column, or than 128 MB");
         }
         for (packing, packed) in both(10, b"0123456789") {
             assert!(packing.unpacked(b"", &packed).is_ok());

@@ -8,8 +8,13 @@ use std::f64::consts::TAU;
 
 use overact::Model;
 
-use super::{check::Check, checks::Context, positions::Fault, torques};
-use crate::{error::Error, kinematics::conditioning::couples, monitor::Monitor};
+use super::Context;
+use crate::{
+    assessment::{check::Check, positions::Fault, torques},
+    error::Error,
+    kinematics::conditioning::couples,
+    monitor::Monitor,
+};
 
 /// Angles from which on the unit is asked for (rad).
 const LARGEST_ANGLE: f64 = 2.0 * TAU;
