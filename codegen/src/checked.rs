@@ -2,9 +2,9 @@
 //! the work of deriving, choosing and lowering functions, which takes long for chains of many joints.
 
 use crate::derivation::derivable;
-use crate::description::{self, Description};
-use crate::diagnostic::{Diagnostics, Source};
 use crate::mechanism::{self, Mechanism};
+use overact_description::Description;
+use overact_description::diagnostic::{Diagnostics, Source};
 
 /// A description without errors.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub struct Checked {
 /// All errors of the description, each at its place; the same as those of
 /// [`compile`](crate::compile()).
 pub fn check(source: &Source) -> Result<Checked, Diagnostics> {
-    let description = description::parse(source)?;
+    let description = overact_description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
     derivable(&mechanism).map_err(|error| error.locate(&description))?;
     Ok(Checked {

@@ -3,14 +3,14 @@
 use crate::Effort;
 use crate::choice::{Chosen, Missing};
 use crate::derivation::{FunctionForm, Selection, Underivable, function_name, inventory};
-use crate::description::{self, Description};
-use crate::diagnostic::{Diagnostics, Source};
 use crate::float::Float;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Forms, Search};
+use overact_description::Description;
+use overact_description::diagnostic::{Diagnostics, Source};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.
@@ -36,7 +36,7 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 /// # Errors
 /// All errors of the description, each at its place.
 pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, Diagnostics> {
-    let description = description::parse(source)?;
+    let description = overact_description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
     let effort = request.effort_for(description.effort);
     let model = derived(mechanism, effort, request);

@@ -67,7 +67,8 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
         return None;
     }
     files.count_elements(count);
-    for own in elements.filter(|own| own.attributes().len() > MOST_ATTRIBUTES) {
+    let mut crowded = elements.filter(|own| own.attributes().len() > MOST_ATTRIBUTES);
+    if let Some(own) = crowded.next() {
         let start = own.range().start;
         let place = Place {
             file,

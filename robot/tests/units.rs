@@ -127,19 +127,6 @@ fn angles_of_one_drive_in_milliradians_are_named_with_the_drive() {
 }
 
 #[test]
-fn torques_in_mn_m_are_named_where_a_prior_contradicts_them() {
-    let prior = "\n[prior.values]\nzz_2 = 0.03\nmx_2 = 0.22\nia_2 = 0.02\nzz_1 = 0.08\nmx_1 = 0.45\nm_2 = \"1.8 kg\"\nia_1 = 0.05\n";
-    let with_prior = ARM.replacen("\n# Which columns", &format!("{prior}\n# Which columns"), 1);
-    assert_ne!(with_prior, ARM);
-    let result = identified(&with_prior, |signals| {
-        signals.torques.iter_mut().for_each(|torque| *torque *= 1e3);
-    });
-    assert_eq!(slip(&result), ("torques", 1e3, None));
-    // With right torques the prior contradicts nothing.
-    assert!(of_units(&identified(&with_prior, |_| ())).is_empty());
-}
-
-#[test]
 fn a_filter_above_the_sampling_frequency_asks_for_the_unit_of_time() {
     let text = ARM.replacen(
         "[identification]",

@@ -2,8 +2,8 @@
 
 use super::group::Group;
 use crate::derivation::{FunctionForm, MotionInput, function_name, sources};
-use crate::diagnostic::did_you_mean;
 use overact_core::{Condition, Function};
+use overact_description::diagnostic::did_you_mean;
 use std::fmt;
 
 /// The name of forward kinematics, which is no function of the table: it iterates.

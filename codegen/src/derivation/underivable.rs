@@ -1,7 +1,7 @@
 //! Why a function of a robot cannot be derived.
 
-use crate::description::Description;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, InternalError};
+use overact_description::Description;
+use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, InternalError};
 
 /// Why a model cannot be derived in the wanted form.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -133,13 +133,13 @@ impl Underivable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnostic::Source;
+    use overact_description::diagnostic::Source;
 
     #[test]
     fn an_internal_error_names_robot_version_and_pass_and_asks_for_a_report() {
         let text = include_str!("../../../robots/emps.toml");
         let source = Source::new("emps.toml", text);
-        let description = crate::description::parse(&source).expect("a robot");
+        let description = overact_description::parse(&source).expect("a robot");
         let broken = "node 3 has lost its value".to_owned();
         let errors = Underivable::from(InternalError::new("walk", broken)).locate(&description);
         assert!(errors.internal().is_some());

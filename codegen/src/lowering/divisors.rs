@@ -7,7 +7,7 @@
 use super::dag::{Dag, Definition, Edge, GuardedEdge};
 use super::{Condition, GuardedExpr};
 use crate::cas::Arena;
-use crate::diagnostic::InternalError;
+use overact_description::diagnostic::InternalError;
 
 /// Puts the `conditions` on those divisors that no guard is on.
 ///

@@ -40,7 +40,7 @@ pub(crate) use min_live_order::schedule_min_live;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 
 use crate::cas::{Arena, Expr};
-use crate::diagnostic::InternalError;
+use overact_description::diagnostic::InternalError;
 
 /// A condition on an expression.
 #[derive(Debug, Clone)]

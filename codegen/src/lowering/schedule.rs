@@ -3,7 +3,7 @@
 use super::dag::{Angle, Dag, Definition, Edge};
 use super::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
 use crate::cas::hasher::QuickMap;
-use crate::diagnostic::InternalError;
+use overact_description::diagnostic::InternalError;
 
 /// The program of a DAG whose angles are planned.
 ///

@@ -9,8 +9,8 @@ use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
-use crate::description::Description;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use overact_description::Description;
+use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
 /// Checks a description and finds its home configuration.
 ///
@@ -86,7 +86,7 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
 /// Legs that are alike shall have the same parameters; a robot without legs side by side has nothing to
 /// be symmetric about.
 fn base_columns(description: &Description) -> BaseColumns {
-    let has_loop = |leg: &crate::description::Leg| leg.end.is_some();
+    let has_loop = |leg: &overact_description::Leg| leg.end.is_some();
     let by_kind = if description.legs.iter().any(has_loop) {
         BaseColumns::Symmetric
     } else {
@@ -97,7 +97,7 @@ fn base_columns(description: &Description) -> BaseColumns {
 
 /// The mechanism as the description says it, with an empty home configuration.
 pub(super) fn plain(description: &Description) -> Mechanism {
-    let joint = |j: &crate::description::Joint| Joint {
+    let joint = |j: &overact_description::Joint| Joint {
         name: j.name.value.clone(),
         kind: j.kind.value,
         antecedent: j.antecedent,
@@ -116,7 +116,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         stribeck: j.stribeck,
         load: j.load.clone(),
     };
-    let leg = |l: &crate::description::Leg| Leg {
+    let leg = |l: &overact_description::Leg| Leg {
         name: l.name.value.clone(),
         shape: l.shape,
         base: l.base.clone(),
@@ -312,7 +312,7 @@ pub(super) fn rough_home(description: &Description) -> Home {
     }
 }
 
-fn home_pose(platform: &crate::description::Platform) -> Vec<f64> {
+fn home_pose(platform: &overact_description::Platform) -> Vec<f64> {
     let motion = platform.motion.value;
     let at = platform.home.at.map(crate::cas::Number::value);
     let mut pose: Vec<f64> = motion

@@ -22,13 +22,13 @@ mod structure;
 #[cfg(test)]
 mod tests;
 
-pub use crate::description::TwistCoordinate;
 pub use check::check;
 pub use home::Home;
 pub use numeric::placement_isometry;
+pub use overact_description::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
-pub use crate::description::{
+pub use overact_description::{
     ActuatorNames, BaseColumns, BodyIndex, End, Formula, JointKind, Motion, Placement, Spring,
     StandardParameter,
 };

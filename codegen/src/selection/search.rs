@@ -4,7 +4,6 @@
 use crate::Effort;
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{Derived, Guard, GuardKind};
-use crate::diagnostic::InternalError;
 use crate::lowering::{
     Array, Condition, Expressions, GuardedExpr, Program, SearchLimits, States, lower,
 };
@@ -12,6 +11,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::states::{Spread, State, spread_states};
 use crate::parallel;
 use overact_core::Function;
+use overact_description::diagnostic::InternalError;
 
 /// States of each kind by which the search compares the digits of forms.
 const STATES: usize = 16;

@@ -3,12 +3,12 @@
 use crate::Request;
 use crate::compile::compile_with;
 use crate::derivation::MotionInput;
-use crate::diagnostic::Source;
 use crate::evaluation::Rows;
 use crate::lowering::{Array, Entry, Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::model::RobotModel;
 use overact_core::{Columns, Function};
+use overact_description::diagnostic::Source;
 use std::collections::HashMap;
 
 /// The model with velocities, accelerations and the identification model.

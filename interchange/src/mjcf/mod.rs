@@ -161,10 +161,10 @@ impl Compiler {
                 exact::turn(&axis, self.angle(angle))
             });
         }
-        if let Some([a, b, c, d, e, f]) = of.numbers(files, "xyaxes") {
-            if let Some(rotation) = of_axes(&Vector3::new(a, b, c), &Vector3::new(d, e, f)) {
-                return rotation;
-            }
+        if let Some([a, b, c, d, e, f]) = of.numbers(files, "xyaxes")
+            && let Some(rotation) = of_axes(&Vector3::new(a, b, c), &Vector3::new(d, e, f))
+        {
+            return rotation;
         }
         if let Some([x, y, z]) = of.numbers(files, "zaxis") {
             let axis = exact::unit(&Vector3::new(x, y, z), 0.0).unwrap_or_else(Vector3::z);

@@ -26,7 +26,11 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
             let case = format!("{stem}: {function:?} of {inputs:?}");
             match (&of_compiled, &of_interpreted) {
                 (Err(one), Err(other)) => {
-                    assert!(is_alike(one, other), "{case}: {one:?}, {other:?}");
+                    let at_limit = is_at_limit(&one.error) && is_at_limit(&other.error);
+                    assert!(
+                        at_limit || is_alike(one, other),
+                        "{case}: {one:?}, {other:?}"
+                    );
                     refused += 1;
                 }
                 (Ok(one), Ok(other)) => {

@@ -14,8 +14,8 @@ use crate::derivation::kinematics::orientation::constant_rotation;
 use crate::derivation::kinematics::platform::centripetal;
 use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
 use crate::derivation::kinematics::turn::Turn;
-use crate::description::StandardParameter;
 use crate::mechanism::{JointKind, Leg};
+use overact_description::StandardParameter;
 
 /// Axes that meet in a point, seen from a body.
 #[derive(Debug, Clone)]

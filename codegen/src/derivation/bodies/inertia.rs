@@ -7,7 +7,7 @@ use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
 use crate::derivation::kinematics::turn::Turn;
 use crate::derivation::names::{AXES, Names};
 use crate::derivation::parameter::BodyParameter;
-use crate::description::StandardParameter;
+use overact_description::StandardParameter;
 
 /// The inertia of a body, or of several that move as one.
 #[derive(Debug, Clone, Copy)]

@@ -14,8 +14,8 @@ use crate::derivation::kinematics::platform::{
     PlatformMotion, PlatformPose, centripetal, on_twist,
 };
 use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
-use crate::description::StandardParameter;
 use crate::mechanism::{End, Leg, TwistCoordinate};
+use overact_description::StandardParameter;
 
 /// A frame that is fixed on the platform, in the platform frame.
 #[derive(Debug, Clone, Copy)]

@@ -17,8 +17,8 @@ use crate::derivation::kinematics::turn::Turn;
 use crate::derivation::names::{Names, joined};
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::robot::Robot;
-use crate::description::StandardParameter;
 use crate::mechanism::{End, JointKind, Leg};
+use overact_description::StandardParameter;
 
 /// A joint with the body behind it.
 struct Link<'a> {

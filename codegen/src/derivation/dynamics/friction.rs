@@ -9,8 +9,8 @@
 
 use crate::cas::{Arena, Expr, Number, Ratio};
 use crate::derivation::robot::Robot;
-use crate::description::StandardParameter;
 use crate::mechanism::JointIndex;
+use overact_description::StandardParameter;
 
 impl<'a> Robot<'a> {
     /// The friction at a rate per unit of a joint's parameter; none of a parameter that is no friction.

@@ -2,11 +2,11 @@
 
 use crate::cas::Arena;
 use crate::derivation::{Derived, MotionInput, Selection, Underivable, derive};
-use crate::diagnostic::Source;
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Mechanism, check};
 use overact_core::Function;
+use overact_description::diagnostic::Source;
 use std::path::PathBuf;
 
 /// Of positions, m and rad.
@@ -33,7 +33,7 @@ fn library() -> Vec<(String, Mechanism)> {
 
 fn mechanism(name: &str, text: String) -> Mechanism {
     let source = Source::new(name, text);
-    let description = crate::description::parse(&source).expect("a right description");
+    let description = overact_description::parse(&source).expect("a right description");
     check(&description).expect("a right mechanism")
 }
 

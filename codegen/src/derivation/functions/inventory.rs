@@ -84,14 +84,14 @@ pub fn function_name(function: Function, from: MotionInput, tree: bool) -> Strin
 #[cfg(test)]
 mod tests {
     use super::{JointsBy, inventory};
-    use crate::diagnostic::Source;
     use crate::mechanism::check;
     use overact_core::{Condition, Function};
+    use overact_description::diagnostic::Source;
 
     /// Whether a robot of the library has the functions of a condition: all of them, or none.
     fn has(description: &str, condition: Condition) -> bool {
         let source = Source::new("robot.toml", description);
-        let description = crate::description::parse(&source).expect("a right description");
+        let description = overact_description::parse(&source).expect("a right description");
         let mechanism = check(&description).expect("a right mechanism");
         let offered = inventory(&mechanism, JointsBy::Rule);
         let wanted = Function::ALL

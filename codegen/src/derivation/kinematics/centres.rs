@@ -82,7 +82,7 @@ mod tests {
     fn of(robot: &str) -> Vec<Vec<usize>> {
         let path = format!("{}/../robots/{robot}.toml", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).unwrap();
-        let description = description::parse(&Source::new(robot, text)).unwrap();
+        let description = overact_description::parse(&Source::new(robot, text)).unwrap();
         let mechanism = mechanism::check(&description).unwrap();
         let leg = &mechanism.legs[0];
         let rates = Rates::new(leg, mechanism.platform.is_some());

@@ -9,8 +9,8 @@ use crate::derivation::linear_algebra::linear::add_to;
 use crate::derivation::names::{coordinate_label, joined};
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::robot::Robot;
-use crate::description::StandardParameter;
 use crate::mechanism::JointIndex;
+use overact_description::StandardParameter;
 
 impl<'a> Robot<'a> {
     /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected. What acts on

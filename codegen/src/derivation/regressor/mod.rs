@@ -16,8 +16,8 @@ use crate::derivation::parameter::BodyParameter;
 use crate::derivation::robot::Robot;
 use crate::derivation::selection::Combination;
 use crate::derivation::underivable::Underivable;
-use crate::description::StandardParameter;
 use crate::mechanism::JointIndex;
+use overact_description::StandardParameter;
 
 /// What generalised forces are projected on.
 #[derive(Debug)]

@@ -35,7 +35,7 @@ mod walk;
 
 use super::SearchLimits;
 use super::dag::Dag;
-use crate::diagnostic::InternalError;
+use overact_description::diagnostic::InternalError;
 
 /// A transformation of a DAG that keeps the values of all nodes.
 #[derive(Debug, Clone, Copy)]

@@ -1,15 +1,15 @@
 //! Errors of actuators that are too few, drive too much, or do not determine the platform's motion.
 
 use super::motions::{Motions, listed};
-use crate::description::Description;
-use crate::description::SIX;
-use crate::diagnostic::{Code, Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
 use crate::mechanism::parasitic::{Parasitic, Rated};
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Leg, Mechanism};
 use nalgebra::DMatrix;
+use overact_description::Description;
+use overact_description::SIX;
+use overact_description::diagnostic::{Code, Diagnostic, DiagnosticKind};
 
 /// Fewer actuators than coordinates, with what the legs leave where they close.
 pub(in crate::mechanism) fn too_few_actuators(

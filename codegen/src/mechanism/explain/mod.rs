@@ -10,10 +10,10 @@ use super::home::HomeError;
 use super::reach::{Reach, look, wrapped};
 use super::structure::Defect;
 use super::{Home, JointKind, Leg, Mechanism};
-use crate::description::{self, Description};
-use crate::diagnostic::{Code, Diagnostic};
 use motions::{Motions, listed};
 use nalgebra::DMatrix;
+use overact_description::Description;
+use overact_description::diagnostic::{Code, Diagnostic};
 
 /// What a leg is called, and what it ends on: legs end on the platform, chains on a body.
 struct Words {
@@ -23,7 +23,7 @@ struct Words {
 }
 
 impl Words {
-    const fn of(leg: &description::Leg) -> Self {
+    const fn of(leg: &overact_description::Leg) -> Self {
         match leg.end_body {
             None => Self {
                 kind: "leg",
@@ -40,7 +40,7 @@ impl Words {
 }
 
 /// A leg that is wrong in every configuration. The error stands at the leg's shape, where it is made.
-pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
+pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnostic {
     let name = |joint: usize| format!("`{}`", leg.joints[joint].name.value);
     let names = |joints: &[usize]| {
         let all: Vec<String> = joints.iter().map(|&joint| name(joint)).collect();
@@ -117,9 +117,9 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
 }
 
 /// How to remove a motion that a leg's joints have and its end does not.
-fn loose_help(leg: &description::Leg) -> &'static str {
+fn loose_help(leg: &overact_description::Leg) -> &'static str {
     let shares_few_directions = match leg.end.as_ref().map(|end| &end.value) {
-        Some(description::End::Point { along, .. }) => along.contains(&false),
+        Some(overact_description::End::Point { along, .. }) => along.contains(&false),
         _ => false,
     };
     if shares_few_directions {

@@ -1,14 +1,14 @@
 //! What is said where the legs leave other motions than those that are described.
 
 use super::{PLANAR, assert_said, changed, said};
-use crate::description;
-use crate::diagnostic::{DiagnosticKind, Source};
 use crate::mechanism::Motion;
 use crate::mechanism::check::{plain, rough_home};
 use crate::mechanism::mobility::Mobility;
 use crate::mechanism::numeric::platform_frame;
 use crate::mechanism::parasitic::closed;
 use nalgebra::Vector3;
+use overact_description;
+use overact_description::diagnostic::{DiagnosticKind, Source};
 
 /// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
 /// the platform the motion along z and the rotations about x and y.
@@ -147,7 +147,7 @@ fn coordinates_that_closures_keep_at_zero_are_found() {
         let motion = "spatial\"\nindependent = [\"z\", \"rx\", \"ry\"]\nsource = \"";
         let text = rps(motion, angles).replace("source = \"\"\n", "");
         let source = Source::new("rps.toml", text);
-        let description = description::parse(&source).expect("a description");
+        let description = overact_description::parse(&source).expect("a description");
         crate::mechanism::check(&description)
             .expect("a robot")
             .still
@@ -165,7 +165,7 @@ fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
         "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
     );
     let source = Source::new("rps.toml", tilted);
-    let description = description::parse(&source).expect("a description");
+    let description = overact_description::parse(&source).expect("a description");
     let mechanism = plain(&description);
     let rough = rough_home(&description);
     let found = closed(&mechanism, &rough).expect("a pose that the legs allow");
@@ -235,7 +235,8 @@ fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
         "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
     ];
     assert_said(&text, "5:10", &what);
-    let description = description::parse(&Source::new("rps.toml", text)).expect("a description");
+    let description =
+        overact_description::parse(&Source::new("rps.toml", text)).expect("a description");
     let errors = super::super::check(&description).expect_err("another robot");
     let kinds: Vec<DiagnosticKind> = errors.iter().map(|error| error.kind).collect();
     assert_eq!(kinds, [DiagnosticKind::NotHeld]);

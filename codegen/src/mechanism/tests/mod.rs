@@ -5,8 +5,8 @@ mod homes;
 mod mobility;
 
 use super::check;
-use crate::description::parse;
-use crate::diagnostic::Source;
+use overact_description::diagnostic::Source;
+use overact_description::parse;
 
 const PLANAR: &str = include_str!("../../../../robots/planar_3rrr.toml");
 const SLIDERS: &str = include_str!("../../../../robots/planar_3prr.toml");

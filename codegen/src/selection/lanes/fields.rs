@@ -61,8 +61,8 @@ pub(super) fn angles(leg: &mut Leg) -> Vec<&mut Angle> {
 #[cfg(test)]
 mod tests {
     use super::{angles, names_of_angles, names_of_numbers, numbers};
-    use crate::diagnostic::Source;
     use crate::mechanism::check;
+    use overact_description::diagnostic::Source;
 
     #[test]
     fn every_number_and_angle_has_a_name_of_its_own() {
@@ -70,7 +70,7 @@ mod tests {
             include_str!("../../../../robots/dualv.toml"),
             include_str!("../../../../robots/hexapod.toml"),
         ] {
-            let description = crate::description::parse(&Source::new("a.toml", text));
+            let description = overact_description::parse(&Source::new("a.toml", text));
             let mut leg = check(&description.expect("right")).expect("right").legs[0].clone();
             let names = [names_of_numbers(&leg), names_of_angles(&leg)];
             assert_eq!(names[0].len(), numbers(&mut leg).len());

@@ -5,8 +5,8 @@ use super::Task;
 use super::peeling::{Step, root_at_home, slide};
 use super::polynomial::{Linear, Quadratic};
 use crate::cas::{Arena, Direction, Number, Vector3};
-use crate::diagnostic::Source;
 use crate::mechanism::{Home, Mechanism, check};
+use overact_description::diagnostic::Source;
 use std::f64::consts::FRAC_PI_3;
 
 /// A robot whose longest length is below a metre, so that its legs are measured by their squares.
@@ -15,7 +15,7 @@ fn five_bar() -> Mechanism {
         "robots/five_bar.toml",
         include_str!("../../../../../robots/five_bar.toml"),
     );
-    let description = crate::description::parse(&source).expect("a right description");
+    let description = overact_description::parse(&source).expect("a right description");
     check(&description).expect("a right mechanism")
 }
 
