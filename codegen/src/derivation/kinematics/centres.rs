@@ -77,7 +77,7 @@ fn from_axis(leg: &Leg, rates: &Rates, first: usize) -> Option<Centre> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Source, description, mechanism};
+    use crate::{Source, mechanism};
 
     fn of(robot: &str) -> Vec<Vec<usize>> {
         let path = format!("{}/../robots/{robot}.toml", env!("CARGO_MANIFEST_DIR"));

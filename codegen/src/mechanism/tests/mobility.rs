@@ -7,7 +7,6 @@ use crate::mechanism::mobility::Mobility;
 use crate::mechanism::numeric::platform_frame;
 use crate::mechanism::parasitic::closed;
 use nalgebra::Vector3;
-use overact_description;
 use overact_description::diagnostic::{DiagnosticKind, Source};
 
 /// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
