@@ -38,6 +38,13 @@ pub enum GuardKind {
     Mass,
 }
 
+/// A guard compares a value with its magnitude at home only as an order of magnitude, so the generated code states
+/// four significant digits of it.
+#[must_use]
+pub fn rounded_magnitude(magnitude: f64) -> f64 {
+    format!("{magnitude:.3e}").parse().unwrap_or(magnitude)
+}
+
 impl GuardKind {
     /// The magnitude at home against which a value is small; none where the sign matters.
     #[must_use]
@@ -49,5 +56,25 @@ impl GuardKind {
             | Self::Coordinates(home)
             | Self::Platform { home, .. } => Some(*home),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_magnitude;
+
+    #[test]
+    fn magnitudes_have_four_digits() {
+        let cases = [
+            (0.0, 0.0),
+            (0.156_064_759_329_289_5, 0.1561),
+            (25.592_368_899_353_342, 25.59),
+            (9.999_9e-9, 1e-8),
+            (123_456.0, 123_500.0),
+        ];
+        for (magnitude, expected) in cases {
+            assert_eq!(rounded_magnitude(magnitude), expected);
+        }
+        assert!(rounded_magnitude(f64::NAN).is_nan());
     }
 }

@@ -43,7 +43,7 @@ pub use functions::inventory::{function_name, inventory};
 pub(crate) use functions::sums::{Addends, LegRowLayout, ROWS, SUMS};
 pub(crate) use functions::sums::{derive_addends, derive_of_rows, derive_of_sums};
 pub use functions::{Derived, derive};
-pub(crate) use guard::{Guard, GuardKind};
+pub(crate) use guard::{Guard, GuardKind, rounded_magnitude};
 pub(crate) use kinematics::inverse_kinematics::working_modes;
 pub(crate) use kinematics::orientation::{closure_frame_choices, may_use_any_axes};
 pub(crate) use kinematics::path::observer_frame_choices;

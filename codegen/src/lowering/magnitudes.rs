@@ -3,8 +3,12 @@
 //! Inputs are bounded by [`Largest`](overact_core::limits::Largest), and divisors from below by their guards. From these
 //! follows a bound of each value, as a power of two. It is rough: the bound of a sum is the sum of the bounds, whatever
 //! cancels. A value whose bound is beyond the range of the numbers may be infinite, and so may be what is computed from it.
-//! Guards on the sizes of some values see to it that no result is infinite or NaN, nor finite where a value on the way to
-//! it is not: they stand on a smallest set of values that every way from an overflow to a result meets ([`VertexCut`]).
+//! Guards on the sizes of some values ensure that no result is infinite or NaN, nor finite where a value on the way to it is
+//! not: they are placed on a smallest set of values that every path from an overflow to a result meets ([`VertexCut`]).
+//!
+//! A few guards on values of moderate size can spare many on what is computed from them, for instance guards on the
+//! entries of an inverse matrix those on all columns that it multiplies. So the set is searched at several
+//! [thresholds](Threshold), and the one with the fewest guards is taken.
 
 use super::program::{Condition, Guard, Operand, Operation, Program};
 use super::vertex_cut::VertexCut;
@@ -18,11 +22,39 @@ pub(crate) struct Magnitudes {
     limits: Limits,
     /// Exponent that no value may exceed; roundings have room above it.
     most: f64,
-    /// What a guard bounds a value to.
-    guarded: f64,
+    /// Where guards are searched for.
+    thresholds: &'static [Threshold],
     /// Exponent below which a divisor counts as unbounded.
     least: f64,
 }
+
+/// From which values on guards may be placed, and to what they bound them.
+#[derive(Debug, Clone, Copy)]
+struct Threshold {
+    /// Guards are placed on values whose bound exceeds this exponent.
+    large: f64,
+    /// The largest magnitude that a guard lets pass; below 2^`large`.
+    guarded: f64,
+}
+
+const fn threshold(large: f64, guarded: f64) -> Threshold {
+    Threshold { large, guarded }
+}
+
+/// For numbers of 64 bits.
+const DOUBLE: [Threshold; 4] = [
+    threshold(1022.0, 1e100),
+    threshold(500.0, 1e60),
+    threshold(220.0, 1e40),
+    threshold(140.0, 1e30),
+];
+
+/// For numbers of 32 bits.
+const SINGLE: [Threshold; 3] = [
+    threshold(126.0, 1e12),
+    threshold(80.0, 1e12),
+    threshold(50.0, 1e12),
+];
 
 /// The bound of an element of an input array, as an exponent of two.
 pub(crate) type Bounds<'b> = dyn Fn(usize, usize) -> f64 + 'b;
@@ -30,15 +62,19 @@ pub(crate) type Bounds<'b> = dyn Fn(usize, usize) -> f64 + 'b;
 impl Magnitudes {
     /// Of programs that compute with these numbers.
     pub(crate) const fn new(float: Float) -> Self {
-        let (most, guarded, least) = match float {
-            Float::F64 => (1022.0, 1e100, -1000.0),
-            Float::F32 => (126.0, 1e12, -120.0),
-        };
-        Self {
-            limits: float.limits(),
-            most,
-            guarded,
-            least,
+        match float {
+            Float::F64 => Self {
+                limits: float.limits(),
+                most: 1022.0,
+                thresholds: &DOUBLE,
+                least: -1000.0,
+            },
+            Float::F32 => Self {
+                limits: float.limits(),
+                most: 126.0,
+                thresholds: &SINGLE,
+                least: -120.0,
+            },
         }
     }
 
@@ -54,10 +90,14 @@ impl Magnitudes {
         inputs: &Bounds<'_>,
         most_of_entries: f64,
     ) -> Vec<f64> {
-        let mut walk = Walk::new(*self, program, inputs);
-        walk.steps();
-        let bounds = walk.entries(most_of_entries);
-        let guards = walk.guards;
+        let placed = self.thresholds.iter().map(|&threshold| {
+            let mut walk = Walk::new(*self, threshold, program, inputs);
+            walk.steps();
+            let bounds = walk.entries(most_of_entries);
+            (walk.guards, bounds)
+        });
+        let fewest = placed.min_by_key(|(guards, _)| guards.len());
+        let (guards, bounds) = fewest.unwrap_or_default();
         program.guards.extend(guards);
         bounds
     }
@@ -127,6 +167,7 @@ impl Magnitudes {
 /// Goes through the steps of a program.
 struct Walk<'w> {
     magnitudes: Magnitudes,
+    threshold: Threshold,
     program: &'w Program,
     inputs: &'w Bounds<'w>,
     /// For each step the exponent to which its own guard bounds it.
@@ -139,9 +180,15 @@ struct Walk<'w> {
 }
 
 impl<'w> Walk<'w> {
-    fn new(magnitudes: Magnitudes, program: &'w Program, inputs: &'w Bounds<'w>) -> Self {
+    fn new(
+        magnitudes: Magnitudes,
+        threshold: Threshold,
+        program: &'w Program,
+        inputs: &'w Bounds<'w>,
+    ) -> Self {
         Self {
             magnitudes,
+            threshold,
             program,
             inputs,
             guarded: vec![None; program.steps.len()],
@@ -155,21 +202,20 @@ impl<'w> Walk<'w> {
     /// is computed from those is looked at again.
     fn steps(&mut self) {
         loop {
-            let overflowing = self.bounds();
-            let guarded = self.cut(&overflowing);
+            self.bounds();
+            let guarded = self.cut();
             if guarded.is_empty() {
                 return;
             }
             for step in guarded {
-                let bound = self.guard(Operand::Step(step), self.magnitudes.guarded);
+                let bound = self.guard(Operand::Step(step), self.threshold.guarded);
                 self.guarded[step] = Some(bound);
             }
         }
     }
 
-    /// Bounds of all steps, and those steps that may overflow though their operands are finite.
-    fn bounds(&mut self) -> Vec<usize> {
-        let mut overflowing = Vec::new();
+    /// Bounds of all steps.
+    fn bounds(&mut self) {
         self.upper.clear();
         self.lower.clear();
         for at in 0..self.program.steps.len() {
@@ -178,11 +224,8 @@ impl<'w> Walk<'w> {
             let mut upper = self.upper_of(operation);
             if let Some(guarded) = self.guarded[at] {
                 upper = guarded.min(upper);
-            } else if !is_finite {
+            } else if !is_finite || upper > self.magnitudes.most {
                 upper = f64::INFINITY;
-            } else if upper > self.magnitudes.most {
-                upper = f64::INFINITY;
-                overflowing.push(at);
             }
             self.upper.push(upper);
             let lower = self.guarded_from_below(Operand::Step(at));
@@ -190,18 +233,19 @@ impl<'w> Walk<'w> {
             let least = self.magnitudes.least;
             self.lower.push(lower.filter(|lower| *lower >= least));
         }
-        overflowing
     }
 
-    /// The smallest set of steps that is infinite or NaN wherever a result is that, or a value of which a finite number
-    /// is made: a divisor, a direction, a velocity whose sign is taken.
-    fn cut(&self, overflowing: &[usize]) -> Vec<usize> {
+    /// The smallest set of large steps on every path from a step that becomes large to one that may be infinite or NaN and
+    /// is a result, or a value of which a finite number is made: a divisor, a direction, a velocity whose sign is taken.
+    fn cut(&self) -> Vec<usize> {
         let mut cut = VertexCut::new(self.program.steps.len());
-        overflowing.iter().for_each(|&step| cut.source(step));
         for (at, step) in self.program.steps.iter().enumerate() {
-            if self.upper[at] == f64::INFINITY {
-                let carriers = carriers(step.operation).filter_map(|a| self.unbounded(a));
-                carriers.for_each(|from| cut.edge(from, at));
+            if self.upper[at] > self.threshold.large {
+                let mut larger = carriers(step.operation).filter_map(|a| self.large(a));
+                match larger.next() {
+                    Some(first) => larger.chain([first]).for_each(|from| cut.edge(from, at)),
+                    None => cut.source(at),
+                }
             }
             let ends = ends(step.operation).filter_map(|a| self.unbounded(a));
             ends.for_each(|end| cut.sink(end));
@@ -220,13 +264,21 @@ impl<'w> Walk<'w> {
         }
     }
 
+    /// The step that an operand is, if its bound exceeds the threshold.
+    fn large(&self, operand: Operand) -> Option<usize> {
+        match operand {
+            Operand::Step(at) if self.upper[at] > self.threshold.large => Some(at),
+            _ => None,
+        }
+    }
+
     /// Bounds of the entries, with guards on those that exceed `most`.
     fn entries(&mut self, most: f64) -> Vec<f64> {
         let mut bounds = Vec::with_capacity(self.program.entries.len());
         for entry in &self.program.entries {
             let mut bound = self.upper(entry.operand);
             if bound > most.log2() {
-                bound = self.guard(entry.operand, most.min(self.magnitudes.guarded));
+                bound = self.guard(entry.operand, most.min(self.threshold.guarded));
                 if let Operand::Step(at) = entry.operand {
                     self.upper[at] = bound;
                 }

@@ -3,7 +3,7 @@
 
 use crate::Effort;
 use crate::cas::{Arena, InputElement};
-use crate::derivation::{Derived, Guard, GuardKind};
+use crate::derivation::{Derived, Guard, GuardKind, rounded_magnitude};
 use crate::lowering::{
     Array, Condition, Expressions, GuardedExpr, Program, SearchLimits, States, lower,
 };
@@ -174,12 +174,26 @@ fn output(function: Function, derived: &Derived<'_>) -> Array {
 
 fn guards<'a>(guards: &[Guard<'a>]) -> Vec<GuardedExpr<'a>> {
     let condition = |kind: GuardKind, leg: String| match kind {
-        GuardKind::Reach(home) => Condition::Reach { leg, home },
-        GuardKind::Leg(home) => Condition::Leg { leg, home },
+        GuardKind::Reach(home) => Condition::Reach {
+            leg,
+            home: rounded_magnitude(home),
+        },
+        GuardKind::Leg(home) => Condition::Leg {
+            leg,
+            home: rounded_magnitude(home),
+        },
         GuardKind::Mass => Condition::Mass,
-        GuardKind::Closed(within) => Condition::Closed { leg, within },
-        GuardKind::Coordinates(home) => Condition::Coordinates { home },
-        GuardKind::Platform { home, actuators } => Condition::Platform { actuators, home },
+        GuardKind::Closed(within) => Condition::Closed {
+            leg,
+            within: rounded_magnitude(within),
+        },
+        GuardKind::Coordinates(home) => Condition::Coordinates {
+            home: rounded_magnitude(home),
+        },
+        GuardKind::Platform { home, actuators } => Condition::Platform {
+            actuators,
+            home: rounded_magnitude(home),
+        },
     };
     let guarded = guards.iter().map(|guard| GuardedExpr {
         value: guard.value,

@@ -9,7 +9,7 @@ mod work;
 use super::expression::{self, ident, number};
 use super::layout::Sections;
 use crate::float::Float;
-use crate::lowering::{Condition, Elements, Gathered, Lanes, Operand};
+use crate::lowering::{Elements, Gathered, Lanes, Operand};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
@@ -177,7 +177,7 @@ fn between(lanes: &Lanes) -> Vec<bool> {
     kept
 }
 
-/// The constants of the legs, their names, and the magnitudes at home of what is guarded.
+/// The constants of the legs, and their names.
 fn tables(lanes: &Lanes) -> TokenStream {
     let count = unsuffixed(lanes.legs.len());
     let numbers = |values: Vec<f64>| {
@@ -191,28 +191,12 @@ fn tables(lanes: &Lanes) -> TokenStream {
     let names = lanes.names.iter().enumerate();
     let names = names.map(|(row, name)| format!(" {row}: {name}"));
     let legs = &lanes.legs;
-    let homes = lanes.program.guards.iter().zip(&lanes.homes);
-    let homes = homes.enumerate().filter_map(|(at, (guard, homes))| {
-        let name = home(at);
-        let homes = numbers(homes.clone());
-        matches!(
-            guard.condition,
-            Condition::Leg { .. } | Condition::Reach { .. }
-        )
-        .then(|| {
-            quote! {
-                #[doc = " What must not vanish, at home."]
-                static #name: [::core::primitive::f64; #count] = #homes;
-            }
-        })
-    });
     quote! {
         #[doc = " Numbers in which the legs differ: a row for each, in it one for each leg."]
         #(#[doc = #names])*
         static OF_LEG: [[::core::primitive::f64; #count]; #rows] = [#(#constants),*];
         #[doc = " Names of the legs, for errors."]
         static LEGS: [&::core::primitive::str; #count] = [#(#legs),*];
-        #(#homes)*
     }
 }
 
@@ -265,7 +249,17 @@ fn unsuffixed(number: usize) -> Literal {
     Literal::usize_unsuffixed(number)
 }
 
-/// The table of a guard's magnitudes at home.
-fn home(guard: usize) -> proc_macro2::Ident {
-    ident(&format!("HOME_{guard}"))
+/// The magnitudes at home of a guarded value, one for each leg.
+fn home(lanes: &Lanes, guard: usize) -> TokenStream {
+    let homes = lanes.homes.get(guard).map_or(&[][..], Vec::as_slice);
+    match homes {
+        [first, rest @ ..] if rest.iter().all(|home| home == first) => {
+            let (first, count) = (number(*first, Float::F64), unsuffixed(homes.len()));
+            quote!(&[#first; #count])
+        }
+        _ => {
+            let homes = homes.iter().map(|home| number(*home, Float::F64));
+            quote!(&[#(#homes),*])
+        }
+    }
 }

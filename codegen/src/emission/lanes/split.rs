@@ -94,8 +94,8 @@ impl<'a> Split<'a> {
         let value = self.own_writer.tokens(value);
         match condition {
             Condition::Reach { .. } => {
-                let home = home(at);
-                quote!(::overact::lanes::reach(&mut failed, #value, &#home, &LEGS, at);)
+                let home = home(self.lanes, at);
+                quote!(::overact::lanes::reach(&mut failed, #value, #home, &LEGS, at);)
             }
             Condition::Size { most } => {
                 let most = magnitude(*most);
@@ -106,8 +106,8 @@ impl<'a> Split<'a> {
                 quote!(::overact::lanes::closed(&mut failed, #value, #within, &LEGS, at);)
             }
             _ => {
-                let home = home(at);
-                quote!(::overact::lanes::leg(&mut failed, #value, &#home, &LEGS, at);)
+                let home = home(self.lanes, at);
+                quote!(::overact::lanes::leg(&mut failed, #value, #home, &LEGS, at);)
             }
         }
     }

@@ -4,7 +4,7 @@ use super::kept::kept_columns;
 use super::outcome::{at_home, of_leg, value_of};
 use super::template::{ARRAY, Template};
 use crate::cas::{Arena, InputElement};
-use crate::derivation::{BodyParameter, Derived, MotionInput, Selection};
+use crate::derivation::{BodyParameter, Derived, MotionInput, Selection, rounded_magnitude};
 use crate::lowering::{
     Column, Condition, Elements, Gathered, Guard, Lanes, Operand, Operation, Pays, Program, fold,
     scatter,
@@ -172,7 +172,10 @@ impl Draft<'_> {
         let of_guard = |(at, guard): (usize, &Guard)| match guard.condition {
             // Of which only the sign matters.
             Condition::Reach { home: 0.0, .. } => vec![0.0; lanes.legs.len()],
-            _ => of_legs.iter().map(|values| values[at].abs()).collect(),
+            _ => {
+                let magnitudes = of_legs.iter().map(|values| values[at].abs());
+                magnitudes.map(rounded_magnitude).collect()
+            }
         };
         Some(
             lanes
