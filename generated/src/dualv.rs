@@ -17,7 +17,7 @@
 /// | `pose_step` | 203, 4 √, 5 sc, 4 at, 16 gd |  |
 /// | `inverse_jacobian` | 80, 4 √, 1 sc, 12 gd |  |
 /// | `inverse_jacobian_from_joints` | 30, 9 sc, 4 gd |  |
-/// | `jacobian` | 196, 4 √, 1 sc, 19 gd |  |
+/// | `jacobian` | 196, 4 √, 1 sc, 17 gd |  |
 /// | `legs_jacobian_from_joints` | 28, 8 sc |  |
 /// | `legs_platform_jacobian_from_joints` | 2, 1 sc |  |
 /// | `closure_platform_jacobian_from_joints` | 46, 9 sc, 4 gd |  |
@@ -28,36 +28,36 @@
 /// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 17 gd |  |
 /// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 126 |  |
 /// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 43 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 36 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 56 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd; in 4 lanes 13 + 4 x 107 |  |
 /// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 43 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 36 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 13 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 56 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
 /// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 28 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 10 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 13 gd |  |
-/// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 19 gd; in lanes 61 + 4 x 141 |  |
+/// | `inverse_dynamics` | 573, 4 √, 1 sc, 12 sg, 17 gd; in lanes 61 + 4 x 141 |  |
 /// | `inverse_dynamics_from_joints` | 517, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `inverse_dynamics_from_actuators` | 739, 7 √, 5 sc, 1 at, 12 sg, 28 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 17 gd; in lanes 61 + 4 x 121 |  |
 /// | `inverse_dynamics_base_from_joints` | 442, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 37 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
+/// | `inverse_dynamics_base_from_actuators` | 656, 7 √, 5 sc, 1 at, 12 sg, 28 gd | 209, 4 √, 5 sc, 4 at, 16 gd |
 /// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 83 |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd; in 4 lanes 15 + 4 x 86 |  |
 /// | `bias` | 461, 4 √, 1 sc, 12 sg, 12 gd; in lanes 13 + 4 x 122 |  |
 /// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd; in lanes 13 + 4 x 102 |  |
 /// | `forward_dynamics` | 707, 4 √, 1 sc, 12 sg, 19 gd; in lanes 48 + 4 x 169 |  |
-/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 21 gd; in lanes 48 + 4 x 155 |  |
+/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 20 gd; in lanes 48 + 4 x 155 |  |
 /// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 17 gd |  |
-/// | `project_torques` | 191, 4 √, 1 sc, 19 gd |  |
+/// | `project_torques` | 191, 4 √, 1 sc, 16 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -400,13 +400,9 @@ impl DualV {
         let l_ab_s1_leg2_minus_l_ab_s1_leg1 = L_AB * s1_leg2 - l_ab_s1_leg1;
         let t3 = t2 * t2
             + l_ab_s1_leg2_minus_l_ab_s1_leg1 * l_ab_s1_leg2_minus_l_ab_s1_leg1;
-        ::overact::guard::platform(
-            t3,
-            0.1562984276975454,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t3, 0.1563, ::overact::ActuatorGroup::All)?;
         let t4 = (L_AB_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, 0.2516045340629568, "leg1")?;
+        ::overact::guard::reach(t4, 0.2516, "leg1")?;
         let t5 = ::overact::math::sqrt(t4);
         let t6 = t1 + 0.5 * t2 - l_ab_s1_leg2_minus_l_ab_s1_leg1 * t5;
         let t7 = L_AB * c1_leg3 - 0.3950502153918333;
@@ -415,11 +411,7 @@ impl DualV {
         let l_ab_s1_leg4_minus_l_ab_s1_leg3 = L_AB * s1_leg4 - l_ab_s1_leg3;
         let t9 = t8 * t8
             + l_ab_s1_leg4_minus_l_ab_s1_leg3 * l_ab_s1_leg4_minus_l_ab_s1_leg3;
-        ::overact::guard::platform(
-            t9,
-            0.1562984276975454,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t9, 0.1563, ::overact::ActuatorGroup::All)?;
         let t10 = (L_AB_SQUARED - 0.25 * t9) / t9;
         let t11 = ::overact::math::sqrt(t10);
         let t12 = t7 + 0.5 * t8 - l_ab_s1_leg4_minus_l_ab_s1_leg3 * t11;
@@ -430,12 +422,8 @@ impl DualV {
         let t15 = t12 - t6;
         let t16 = t14 - t13;
         let t17 = ::overact::math::sqrt(0.0484 * (t16 * t16 + t15 * t15));
-        ::overact::guard::platform(
-            t17,
-            0.048400000003465476,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::reach(t10, 0.2516045340629568, "leg3")?;
+        ::overact::guard::platform(t17, 0.0484, ::overact::ActuatorGroup::All)?;
+        ::overact::guard::reach(t10, 0.2516, "leg3")?;
         let t18 = 1.0 / t17;
         ::core::result::Result::Ok([
             0.5 * (t6 + t12), 0.5 * (t13 + t14),
@@ -475,9 +463,9 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -492,9 +480,9 @@ impl DualV {
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -513,9 +501,9 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -530,9 +518,9 @@ impl DualV {
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -624,18 +612,18 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -646,18 +634,18 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -716,27 +704,27 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -745,36 +733,32 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -814,11 +798,7 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_2, 25.59, ::overact::ActuatorGroup::All)?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
             + g1_vy_leg3 * missed_3 - minus_g1_vy_leg4 * missed_4 - l_2_1 * t1;
@@ -841,11 +821,7 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_3, 0.3077, ::overact::ActuatorGroup::All)?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
         let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
@@ -880,25 +856,25 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -907,25 +883,25 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -981,10 +957,10 @@ impl DualV {
             q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[4], q1_plus_q2_leg3, joints[7],
             q1_plus_q2_leg4, joints[10], pose[2],
         ]);
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
         let k1_leg1 = INV_L_AB / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * k1_leg1;
         let k1_leg2 = INV_L_AB / s2_leg2;
@@ -1016,7 +992,7 @@ impl DualV {
     ///
     /// Output: 3 x 4.
     ///
-    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 3 negations, 190 intermediates.
+    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 3 negations, 190 intermediates.
     ///
     /// # Errors
     /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
@@ -1038,25 +1014,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1065,34 +1041,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
             let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
@@ -1112,7 +1084,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -1137,41 +1109,42 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
+            ::overact::guard::size(l_2_1, 1e30)?;
+            ::overact::guard::size(l_3_1, 1e30)?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t1 = inv_pivot_3
                 * (minus_g1_wz_leg1 + g1_vx_leg1 * l_3_1
                     + l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg1);
             let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg1 + l_3_2 * t1;
-            let t3 = g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1;
-            ::overact::guard::size(t3, 1e100)?;
             let g1_vy_minus_g1_vx_l_2_1_leg2 = minus_g1_vx_leg2 * l_2_1
                 - minus_g1_vy_leg2;
-            let t4 = inv_pivot_3
+            let t3 = inv_pivot_3
                 * (g1_wz_leg2 + minus_g1_vx_leg2 * l_3_1
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg2);
-            let t5 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg2 - l_3_2 * t4;
-            let t6 = minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t5 + l_3_1 * t4;
-            ::overact::guard::size(t6, 1e100)?;
+            let t4 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg2 - l_3_2 * t3;
             let g1_vy_minus_g1_vx_l_2_1_leg3 = g1_vy_leg3 - g1_vx_leg3 * l_2_1;
-            let t7 = inv_pivot_3
+            let t5 = inv_pivot_3
                 * (g1_wz_leg3 - g1_vx_leg3 * l_3_1
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg3);
-            let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg3 - l_3_2 * t7;
-            let t9 = g1_vx_leg3 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
-            ::overact::guard::size(t9, 1e100)?;
+            let t6 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg3 - l_3_2 * t5;
             let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1
                 - minus_g1_vy_leg4;
-            let t10 = inv_pivot_3
+            let t7 = inv_pivot_3
                 * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
-            let t11 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t10;
-            let t12 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t11 + l_3_1 * t10;
-            ::overact::guard::size(t12, 1e100)?;
+            let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t7;
             ::core::result::Result::Ok([
-                [t3, -t6, t9, -t12], [t2, t5, t8, t11], [-t1, t4, t7, t10],
+                [
+                    g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1,
+                    -(minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t4 + l_3_1 * t3),
+                    g1_vx_leg3 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5,
+                    -(minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t8 + l_3_1 * t7),
+                ],
+                [t2, t4, t6, t8],
+                [-t1, t3, t5, t7],
             ])
         })
     }
@@ -1309,10 +1282,10 @@ impl DualV {
             q1_plus_q2_leg1, q1_plus_q2_leg2, q1_plus_q2_leg3, q1_plus_q2_leg4, joints[1], pose[2],
             joints[4], joints[7], joints[10],
         ]);
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
         // --- leg1
         let k1_leg1 = INV_L_AB / s2_leg1;
         let g1_vy_leg1 = s12_leg1 * k1_leg1;
@@ -1404,14 +1377,14 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
@@ -1432,14 +1405,14 @@ impl DualV {
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
@@ -1458,14 +1431,14 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
@@ -1484,14 +1457,14 @@ impl DualV {
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -1548,12 +1521,12 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1593,12 +1566,12 @@ impl DualV {
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -1630,12 +1603,12 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1669,12 +1642,12 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -1740,25 +1713,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1767,34 +1740,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -1818,7 +1787,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -1851,7 +1820,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t4 = t3 / pivot_3;
@@ -1901,27 +1870,27 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1930,36 +1899,32 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg1
             let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -2059,7 +2024,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -2092,7 +2057,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t4 = t3 / pivot_3;
@@ -2204,20 +2169,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -2236,7 +2187,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -2244,7 +2195,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -2252,7 +2203,7 @@ impl DualV {
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let minus_g2_vx_leg = l1_x_leg / det_leg;
                     let minus_gq2_vx_leg = d_x_leg / det_leg;
                     let g1_vx_leg = minus_gq2_vx_leg - minus_g2_vx_leg;
@@ -2568,39 +2519,39 @@ impl DualV {
         let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         // --- leg2
         let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         // --- leg3
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][61] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -3080,10 +3031,10 @@ impl DualV {
                 joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
             output[2][61] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -3556,7 +3507,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 43 guards, 51 negations, 526 intermediates.
+    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 36 guards, 51 negations, 526 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -3634,41 +3585,41 @@ impl DualV {
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let half_d_x_leg3 = 0.5 * d_x_leg3;
             // --- leg2
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -3695,11 +3646,7 @@ impl DualV {
             output[0][49] = -minus_g1_vx_leg4; // off_1_leg4
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
@@ -3724,7 +3671,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
@@ -3751,7 +3698,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             // --- leg1
@@ -3826,9 +3773,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = t3 / pivot_3;
+            ::overact::guard::size(wz, 1e60)?;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let vy = t2 / pivot_2 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -3859,32 +3808,6 @@ impl DualV {
                 g1_wz_leg2,
                 minus_rate_1_leg2,
             ); // fs_1_leg2
-            let v_end_x_leg3 = vx + v_arm_x_leg3;
-            let v_end_y_leg3 = vy + v_arm_y_leg3;
-            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
-            output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
-            output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
-            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
-                + minus_g1_vy_leg4 * v_end_y_leg3;
-            output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = ::overact::math::wide::signed(
-                minus_g1_vx_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][48] = ::overact::math::wide::signed(
-                minus_g1_vy_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_wz_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
@@ -3934,6 +3857,32 @@ impl DualV {
             output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
             output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+            let v_end_x_leg3 = vx + v_arm_x_leg3;
+            let v_end_y_leg3 = vy + v_arm_y_leg3;
+            let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
+            output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
+            output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
+            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+            let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+                + minus_g1_vy_leg4 * v_end_y_leg3;
+            output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[0][48] = ::overact::math::wide::signed(
+                minus_g1_vx_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[1][48] = ::overact::math::wide::signed(
+                minus_g1_vy_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_wz_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
@@ -3973,32 +3922,17 @@ impl DualV {
                 minus_g2_vy_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
-            let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
-            output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-            output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
-            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
-            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             // --- leg1
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -4006,11 +3940,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -4018,11 +3954,13 @@ impl DualV {
                 - bias_rate_dot_1_leg2;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
             let t2_leg3 = 0.5 * t1_leg3;
             let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
@@ -4031,11 +3969,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -4055,12 +3995,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            ::overact::guard::size(dwz, 1e100)?;
+            ::overact::guard::size(dwz, 1e60)?;
             output[2][60] = dwz; // zz_platform
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
+            ::overact::guard::size(dvy, 1e60)?;
             output[1][63] = dvy; // m_platform
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e100)?;
+            ::overact::guard::size(dvx, 1e60)?;
             output[0][63] = dvx; // m_platform
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
@@ -4098,59 +4039,123 @@ impl DualV {
             output[2][50] = zz_2_leg4_on_wz;
             output[2][51] = r_p_per_l_ab_a3_x_leg3
                 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz); // mx_2_leg4
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             let a_y_platform = c_phi * dvy - s_phi * dvx;
             output[2][61] = a_y_platform; // mx_platform
+            // --- leg3
+            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
+            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+            output[0][30] = zz_1_leg3_on_vx;
+            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
+            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = zz_2_leg3_on_vx;
+            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+            output[0][36] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
+            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
+            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
+            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+            output[2][30] = zz_1_leg3_on_wz;
+            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
+            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_wz;
+            output[2][36] = r_p_per_l_ab_a3_x_leg3
+                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
+            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+            output[1][30] = zz_1_leg3_on_vy;
+            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
+            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = zz_2_leg3_on_vy;
+            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+            output[1][36] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
+            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
+            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
+            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
+            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
+            // --- leg4
+            let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = zz_1_leg4_on_vx;
+            output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
+            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = zz_1_leg4_on_vy;
+            output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
+            let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_vx;
+            output[0][51] = inv_l_ab_a_end_x_leg3
+                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
+            let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_vy;
+            output[1][51] = inv_l_ab_a_end_y_leg3
+                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
+            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
+            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
+            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
+            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+            output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
             output[0][0] = zz_1_leg1_on_vx;
             output[0][1] = zz_1_leg1_on_vx; // ia_1_leg1
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
-            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
-            ::overact::guard::size(t4_leg3, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = zz_2_leg1_on_vx;
+            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
-            output[0][6] = inv_l_ab_a_end_x_leg1
-                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
             // --- leg2
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
             let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
             output[0][15] = zz_1_leg2_on_vx;
             output[0][16] = zz_1_leg2_on_vx; // ia_1_leg2
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
-            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
             output[0][20] = zz_2_leg2_on_vx;
             output[0][21] = inv_l_ab_a_end_x_leg1
                 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx); // mx_2_leg2
+            output[0][6] = inv_l_ab_a_end_x_leg1
+                - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx); // mx_2_leg1
+            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
+                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
             output[0][8] = L_AB_SQUARED * zz_1_leg1_on_vx; // m_2_leg1
-            // --- leg1
-            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             output[1][7] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
                 + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
             output[2][7] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
                 + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
+            // --- leg1
             let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
             output[1][0] = zz_1_leg1_on_vy;
             output[1][1] = zz_1_leg1_on_vy; // ia_1_leg1
@@ -4174,15 +4179,11 @@ impl DualV {
                 + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz); // mx_2_leg1
             output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
-            // --- leg2
-            let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[0][22] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
-                + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
             output[1][22] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
                 + g2_vy_leg2 * a2_x_leg2); // my_2_leg2
             output[2][22] = g1_wz_leg2 * inv_l_ab_a_on_f2_leg2
                 + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
+            // --- leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][15] = zz_1_leg2_on_vy;
             output[1][16] = zz_1_leg2_on_vy; // ia_1_leg2
@@ -4199,73 +4200,12 @@ impl DualV {
                 + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz); // mx_2_leg2
             output[1][23] = L_AB_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
-            // --- leg4
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[2][52] = -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4
-                + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
-            output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
-            output[1][52] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
-                + g2_vy_leg4 * a2_x_leg4); // my_2_leg4
-            let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = zz_1_leg4_on_vx;
-            output[0][46] = zz_1_leg4_on_vx; // ia_1_leg4
-            let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = zz_1_leg4_on_vy;
-            output[1][46] = zz_1_leg4_on_vy; // ia_1_leg4
-            let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
-            output[0][50] = zz_2_leg4_on_vx;
-            let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
-            output[1][50] = zz_2_leg4_on_vy;
-            let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
-            output[0][51] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx); // mx_2_leg4
-            let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
-            output[1][51] = inv_l_ab_a_end_y_leg3
-                - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy); // mx_2_leg4
-            output[0][53] = L_AB_SQUARED * zz_1_leg4_on_vx; // m_2_leg4
-            output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
             output[0][61] = -minus_mx_platform_on_vx; // mx_platform
             output[1][62] = -minus_mx_platform_on_vx; // my_platform
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
             output[1][61] = -my_platform_on_vx; // mx_platform
-            // --- leg3
-            let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
-            output[0][30] = zz_1_leg3_on_vx;
-            output[0][31] = zz_1_leg3_on_vx; // ia_1_leg3
-            let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = zz_2_leg3_on_vx;
-            output[0][36] = inv_l_ab_a_end_x_leg3
-                - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
-            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][37] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
-            output[0][38] = L_AB_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
-            output[1][37] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
-            output[2][37] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
-            let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
-            output[1][30] = zz_1_leg3_on_vy;
-            output[1][31] = zz_1_leg3_on_vy; // ia_1_leg3
-            let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = zz_2_leg3_on_vy;
-            output[1][36] = inv_l_ab_a_end_y_leg3
-                - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy); // mx_2_leg3
-            let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
-            output[2][30] = zz_1_leg3_on_wz;
-            output[2][31] = zz_1_leg3_on_wz; // ia_1_leg3
-            let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = zz_2_leg3_on_wz;
-            output[2][36] = r_p_per_l_ab_a3_x_leg3
-                - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz); // mx_2_leg3
-            output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
-            output[2][38] = L_AB_SQUARED * zz_1_leg3_on_wz; // m_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -4350,42 +4290,42 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -4417,7 +4357,7 @@ impl DualV {
             let det_ja = g1_wz_leg3 * t1;
             ::overact::guard::platform(
                 det_ja,
-                3.5376915986291904,
+                3.538,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let half_per_det_ja = 0.5 / det_ja;
@@ -4950,10 +4890,10 @@ impl DualV {
                 joints[1], joints[4], joints[7], joints[10], joints[0], pose[2], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let k1_leg1 = INV_L_AB / s2_leg1;
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
@@ -4983,7 +4923,7 @@ impl DualV {
             let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
             ::overact::guard::platform(
                 det_ja,
-                7.075383197161306,
+                7.075,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
@@ -5425,7 +5365,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 56 guards, 49 negations, 628 intermediates.
+    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 49 negations, 628 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -5506,42 +5446,42 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -5575,7 +5515,7 @@ impl DualV {
             let det_ja = g1_wz_leg3 * t1;
             ::overact::guard::platform(
                 det_ja,
-                3.5376915986291904,
+                3.538,
                 ::overact::ActuatorGroup::Kept,
             )?;
             // --- leg4
@@ -5585,11 +5525,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -5602,7 +5538,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
@@ -5625,7 +5561,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let half_per_det_ja = 0.5 / det_ja;
@@ -5735,29 +5671,29 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t2
                 - l_3_2 * t3;
             let wz = inv_pivot_3 * t4;
+            ::overact::guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let vy = inv_pivot_2 * t3 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t2 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
             output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -5765,17 +5701,17 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -5786,16 +5722,16 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
             output[2][32] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
@@ -5803,16 +5739,16 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -5832,9 +5768,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t5
                 - l_3_2 * t6;
             let dwz = inv_pivot_3 * t7;
-            ::overact::guard::size(dwz, 1e100)?;
+            ::overact::guard::size(dwz, 1e60)?;
             let dvy = inv_pivot_2 * t6 - l_3_2 * dwz;
+            ::overact::guard::size(dvy, 1e60)?;
             let dvx = inv_pivot_1 * t5 - l_2_1 * dvy - l_3_1 * dwz;
+            ::overact::guard::size(dvx, 1e60)?;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
@@ -5846,107 +5784,63 @@ impl DualV {
             output[2][52] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
+            // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             output[2][37] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
+            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+            output[2][35] = zz_2_leg3_on_q1_leg3;
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            output[0][0] = rate_dot_1_leg1; // zz_1_leg1
+            output[0][1] = rate_dot_1_leg1; // ia_1_leg1
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-                + L_AB_SQUARED * rate_1_squared_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[1][15] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][16] = -minus_rate_dot_1_leg2; // ia_1_leg2
+            let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
             output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
-            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            output[0][0] = rate_dot_1_leg1; // zz_1_leg1
-            output[0][1] = rate_dot_1_leg1; // ia_1_leg1
-            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+                + L_AB_SQUARED * rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+            output[0][20] = zz_2_leg2_on_q1_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][7] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            output[1][7] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][22] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
             let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
             output[1][20] = zz_2_leg2_on_q1_leg2;
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[1][15] = -minus_rate_dot_1_leg2; // zz_1_leg2
-            output[1][16] = -minus_rate_dot_1_leg2; // ia_1_leg2
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
-            output[2][35] = zz_2_leg3_on_q1_leg3;
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][30] = rate_dot_1_leg3; // zz_1_leg3
-            output[2][31] = rate_dot_1_leg3; // ia_1_leg3
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
-            output[2][50] = zz_2_leg4_on_q1_leg3;
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][61] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
             output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
-            let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
-            output[0][20] = zz_2_leg2_on_q1_leg1;
-            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
-            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
-            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
-            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
-            // --- leg4
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
-            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
-            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
-            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][48] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
-            output[2][45] = zz_1_leg4_on_q1_leg3;
-            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
-            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
-            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
-            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
-            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
-            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
-            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            // --- platform
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            let mx_platform_on_q1_leg3 = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
-            output[2][61] = mx_platform_on_q1_leg3;
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[0][62] = my_platform_on_q1_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
             output[0][10] = -::overact::math::wide::signed(
@@ -5971,6 +5865,8 @@ impl DualV {
             ); // fs_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
             output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
             output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
@@ -5992,10 +5888,12 @@ impl DualV {
             ); // fs_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
+            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
+            output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
+            output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
+            // --- platform
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
             let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
             output[2][60] = zz_platform_on_q1_leg3;
             let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
@@ -6005,14 +5903,18 @@ impl DualV {
             let t1_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
             output[2][36] = t1_platform
                 - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3); // mx_2_leg3
+            // --- leg4
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+            output[2][45] = zz_1_leg4_on_q1_leg3;
+            output[2][46] = zz_1_leg4_on_q1_leg3; // ia_1_leg4
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
+            output[2][50] = zz_2_leg4_on_q1_leg3;
             output[2][51] = t1_platform
                 - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            output[1][62] = my_platform_on_q1_leg2;
             output[2][63] = R_P * wz_by_a3_a_x_platform; // m_platform
-            // --- leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
@@ -6029,60 +5931,46 @@ impl DualV {
                 g2_a2_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
-            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
-            output[0][44] = off_3_leg3_on_q1_leg1;
-            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
-            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
             output[2][43] = ::overact::math::wide::signed(
                 off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            let fv_3_leg3_on_q1_leg1 = qd_3_leg3 * off_3_leg3_on_q1_leg1;
-            ::overact::guard::size(fv_3_leg3_on_q1_leg1, 1e100)?;
-            output[0][42] = fv_3_leg3_on_q1_leg1;
-            output[1][43] = -::overact::math::wide::signed(
-                minus_off_3_leg3_on_q1_leg2,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            let minus_fv_3_leg3_on_q1_leg2 = qd_3_leg3 * minus_off_3_leg3_on_q1_leg2;
-            ::overact::guard::size(minus_fv_3_leg3_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(dvx, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
-            output[1][42] = -minus_fv_3_leg3_on_q1_leg2; // fv_3_leg3
-            // --- leg4
-            let qd_3_leg4 = wz - rate_2_leg4;
-            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg1,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
-            output[1][58] = -::overact::math::wide::signed(
-                minus_off_3_leg4_on_q1_leg2,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg3,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
-            output[0][50] = zz_2_leg4_on_q1_leg1;
-            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
-            output[1][50] = zz_2_leg4_on_q1_leg2;
+            output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
+            output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
+            output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
+            output[2][48] = ::overact::math::wide::signed(
+                minus_g1_a3_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[0][48] = -::overact::math::wide::signed(
+                g1_a1_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
+            output[1][48] = -::overact::math::wide::signed(
+                g1_a2_leg4,
+                minus_rate_1_leg4,
+            ); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
             output[1][52] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
+            let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+            output[0][45] = -minus_zz_1_leg4_on_q1_leg1; // zz_1_leg4
+            output[0][46] = -minus_zz_1_leg4_on_q1_leg1; // ia_1_leg4
+            let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+            output[1][45] = -minus_zz_1_leg4_on_q1_leg2; // zz_1_leg4
+            output[1][46] = -minus_zz_1_leg4_on_q1_leg2; // ia_1_leg4
+            let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+            output[0][50] = zz_2_leg4_on_q1_leg1;
+            let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+            output[1][50] = zz_2_leg4_on_q1_leg2;
+            output[0][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1); // m_2_leg4
+            output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             output[0][55] = ::overact::math::wide::signed(
@@ -6099,38 +5987,54 @@ impl DualV {
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             ); // fs_2_leg4
+            let qd_3_leg4 = wz - rate_2_leg4;
+            output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
+            output[0][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg1,
+                qd_3_leg4,
+            ); // fs_3_leg4
+            output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
+            output[1][58] = -::overact::math::wide::signed(
+                minus_off_3_leg4_on_q1_leg2,
+                qd_3_leg4,
+            ); // fs_3_leg4
+            output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
+            output[2][58] = ::overact::math::wide::signed(
+                off_3_leg4_on_q1_leg3,
+                qd_3_leg4,
+            ); // fs_3_leg4
+            output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
+            // --- leg3
+            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+            output[0][35] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3
+            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+            output[1][35] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3
+            let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+            output[0][44] = off_3_leg3_on_q1_leg1;
+            output[0][42] = qd_3_leg3 * off_3_leg3_on_q1_leg1; // fv_3_leg3
+            let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
+            output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
+            output[0][43] = ::overact::math::wide::signed(
+                off_3_leg3_on_q1_leg1,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            output[1][43] = -::overact::math::wide::signed(
+                minus_off_3_leg3_on_q1_leg2,
+                qd_3_leg3,
+            ); // fs_3_leg3
             // --- platform
             let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
             output[0][60] = zz_platform_on_q1_leg1;
-            let mx_platform_on_q1_leg1 = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[0][61] = mx_platform_on_q1_leg1;
-            let mx_platform_on_q1_leg2 = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[1][61] = mx_platform_on_q1_leg2;
-            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            ::overact::guard::size(m_platform_on_q1_leg1, 1e100)?;
-            output[0][63] = m_platform_on_q1_leg1;
-            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
-            ::overact::guard::size(m_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
-            ::overact::guard::size(my_platform_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(my_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(wz_by_a3_a_x_platform, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg3, 1e100)?;
-            output[1][63] = m_platform_on_q1_leg2;
-            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
-            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
+            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+            output[0][62] = my_platform_on_q1_leg1;
             let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+            output[0][63] = m_platform_on_q1_leg1;
             let t2_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
             let t3_platform = R_P_SQUARED_PER_L_AB
                 * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1
@@ -6143,8 +6047,15 @@ impl DualV {
             output[0][51] = t4_platform
                 - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1); // mx_2_leg4
             output[0][21] = t3_platform - L_AB * zz_2_leg2_on_q1_leg1; // mx_2_leg2
-            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
+            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform;
+            output[1][62] = my_platform_on_q1_leg2;
             let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+            let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
+            output[1][60] = -minus_zz_platform_on_q1_leg2; // zz_platform
+            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+            output[1][63] = m_platform_on_q1_leg2;
             let t5_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
             let t6_platform = R_P_SQUARED_PER_L_AB
                 * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
@@ -6158,6 +6069,7 @@ impl DualV {
             output[1][51] = t7_platform
                 - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2); // mx_2_leg4
             output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
+            output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
             ::core::result::Result::Ok(())
         })
@@ -6265,20 +6177,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -6296,7 +6194,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -6304,7 +6202,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -6313,7 +6211,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let a_arm_x_leg = my_platform_on_vx * of_leg[0];
@@ -6595,44 +6493,44 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
         // --- leg2
         let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
         let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         // --- leg3
         let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
         let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][1] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -7019,10 +6917,10 @@ impl DualV {
                 joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
             output[2][1] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -7402,7 +7300,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 43 guards, 43 negations, 486 intermediates.
+    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 36 guards, 43 negations, 486 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -7470,41 +7368,41 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -7529,11 +7427,7 @@ impl DualV {
             output[0][19] = -minus_g1_vx_leg4; // off_1_leg4R
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
@@ -7558,7 +7452,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
@@ -7585,7 +7479,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
@@ -7647,9 +7541,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = t3 / pivot_3;
+            ::overact::guard::size(wz, 1e60)?;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let vy = t2 / pivot_2 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -7805,24 +7701,16 @@ impl DualV {
             output[2][43] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
             output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -7830,11 +7718,13 @@ impl DualV {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -7842,11 +7732,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3 - t2_leg3)
@@ -7855,11 +7747,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -7879,87 +7773,57 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            ::overact::guard::size(dwz, 1e100)?;
+            ::overact::guard::size(dwz, 1e60)?;
             output[2][0] = dwz; // zz_platformR
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
+            ::overact::guard::size(dvy, 1e60)?;
             output[1][3] = dvy; // m_platformR
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e100)?;
+            ::overact::guard::size(dvx, 1e60)?;
             output[0][3] = dvx; // m_platformR
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
+            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
+                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
+            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             output[0][20] = minus_g2_vx_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
-                + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
-            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
-            let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
-            output[0][4] = g1_vx_leg1 * rate_dot_1_leg1; // zz_1_leg1R
-            // --- leg2
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
+            let rate_dot_2_leg2 = k1_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+            output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
+            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
             let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
             output[0][25] = -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2
                 + g2_vx_leg2 * a2_x_leg2); // my_2_leg2
-            let rate_dot_2_leg2 = k1_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
-            output[0][21] = g2_vx_leg2 * rate_dot_2_leg2; // zz_2_leg2R
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[0][5] = minus_g1_vx_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
-            // --- leg3
-            let a_end_x_leg3 = dvx - a_arm_x_leg1;
-            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
-            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg3;
-            let minus_rate_dot_2_leg3 = (a_on_f2_leg3
-                + rate_2_squared_leg3 * t1_leg3) / det_leg3;
-            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
-                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
-            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
-            let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
-            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
-            // --- leg4
-            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
-                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
-            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-                + L_AB_SQUARED * rate_1_squared_leg4;
-            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
-                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
-            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
-            output[0][1] = -minus_mx_platform_on_vx; // mx_platform
-            output[1][2] = -minus_mx_platform_on_vx; // my_platformR
-            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
-            output[0][2] = my_platform_on_vx; // my_platformR
-            output[1][1] = -my_platform_on_vx; // mx_platform
             let a_y_platform = c_phi * dvy - s_phi * dvx;
             output[2][1] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * dvy + c_phi * dvx;
             output[2][2] = -a_x_platform; // my_platformR
             output[1][4] = g1_vy_leg1 * rate_dot_1_leg1; // zz_1_leg1R
             output[2][4] = -(minus_g1_wz_leg1 * rate_dot_1_leg1); // zz_1_leg1R
+            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
+                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
+            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
+                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
+            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
+            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][5] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             output[2][5] = -(g1_wz_leg2 * minus_rate_dot_1_leg2); // zz_1_leg2R
             output[1][25] = -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2
@@ -7968,8 +7832,49 @@ impl DualV {
                 + minus_g2_wz_leg2 * a2_x_leg2; // my_2_leg2
             output[1][21] = g2_vy_leg2 * rate_dot_2_leg2; // zz_2_leg2R
             output[2][21] = -(minus_g2_wz_leg2 * rate_dot_2_leg2); // zz_2_leg2R
+            // --- leg3
+            let a_end_x_leg3 = dvx - a_arm_x_leg1;
+            let a_end_y_leg3 = a_arm_y_leg3 + dvy;
+            let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
+                + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
+            let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
+            output[0][6] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
+                + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            output[0][7] = minus_g1_vx_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
+            let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg3;
+            let minus_rate_dot_2_leg3 = (a_on_f2_leg3
+                + rate_2_squared_leg3 * t1_leg3) / det_leg3;
+            output[0][22] = minus_g2_vx_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+                + L_AB_SQUARED * rate_1_squared_leg4;
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[0][23] = g2_vx_leg4 * rate_dot_2_leg4; // zz_2_leg4R
+            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][27] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
+                + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
+            let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+            output[0][1] = -minus_mx_platform_on_vx; // mx_platform
+            output[1][2] = -minus_mx_platform_on_vx; // my_platformR
+            let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+            output[0][2] = my_platform_on_vx; // my_platformR
+            output[1][1] = -my_platform_on_vx; // mx_platform
             output[1][6] = g1_vy_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[2][6] = g1_wz_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
+            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
+                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
+            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][7] = minus_g1_vy_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[2][7] = minus_g1_wz_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[1][27] = -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4
@@ -7978,26 +7883,6 @@ impl DualV {
                 + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            output[2][20] = -(g2_wz_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            output[1][22] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            output[2][22] = minus_g2_wz_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = g1_vx_leg1 * inv_l_ab_a_on_f2_leg1
-                + minus_g2_vx_leg1 * a2_x_leg1; // my_2_leg1
-            output[1][24] = g1_vy_leg1 * inv_l_ab_a_on_f2_leg1
-                + minus_g2_vy_leg1 * a2_x_leg1; // my_2_leg1
-            output[2][24] = -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1
-                + g2_wz_leg1 * a2_x_leg1); // my_2_leg1
-            let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
-            let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            output[0][26] = g1_vx_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vx_leg3 * a2_x_leg3; // my_2_leg3
-            output[1][26] = g1_vy_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_vy_leg3 * a2_x_leg3; // my_2_leg3
-            output[2][26] = g1_wz_leg3 * inv_l_ab_a_on_f2_leg3
-                + minus_g2_wz_leg3 * a2_x_leg3; // my_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -8087,42 +7972,42 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -8154,7 +8039,7 @@ impl DualV {
             let det_ja = g1_wz_leg3 * t1;
             ::overact::guard::platform(
                 det_ja,
-                3.5376915986291904,
+                3.538,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let half_per_det_ja = 0.5 / det_ja;
@@ -8615,10 +8500,10 @@ impl DualV {
                 joints[1], joints[4], joints[7], joints[10], joints[3], joints[6], joints[0],
                 pose[2], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -8648,7 +8533,7 @@ impl DualV {
             let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
             ::overact::guard::platform(
                 det_ja,
-                7.075383197161306,
+                7.075,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
@@ -9016,7 +8901,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 56 guards, 40 negations, 607 intermediates.
+    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 40 negations, 607 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -9102,42 +8987,42 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -9170,7 +9055,7 @@ impl DualV {
             let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
             ::overact::guard::platform(
                 det_ja,
-                3.5376915986291904,
+                3.538,
                 ::overact::ActuatorGroup::Kept,
             )?;
             // --- leg4
@@ -9180,11 +9065,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
@@ -9197,7 +9078,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
@@ -9221,7 +9102,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let half_per_det_ja = 0.5 / det_ja;
@@ -9314,30 +9195,30 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t4
                 - l_3_2 * t5;
             let wz = inv_pivot_3 * t6;
+            ::overact::guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let vy = inv_pivot_2 * t5 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -9346,16 +9227,16 @@ impl DualV {
             // --- leg1
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
             output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -9366,16 +9247,16 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
             output[2][10] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
@@ -9383,16 +9264,16 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -9412,11 +9293,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
                 - l_3_2 * t8;
             let dwz = inv_pivot_3 * t9;
-            ::overact::guard::size(dwz, 1e100)?;
+            ::overact::guard::size(dwz, 1e60)?;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
+            ::overact::guard::size(dvy, 1e60)?;
             let dvx = inv_pivot_1 * t7 - l_2_1 * dvy - l_3_1 * dwz;
+            ::overact::guard::size(dvx, 1e60)?;
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
@@ -9427,12 +9310,18 @@ impl DualV {
             output[2][27] = -(7.142857142857143
                 * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
                     + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)); // my_2_leg4
+            // --- leg3
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
             output[2][26] = INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3; // my_2_leg3
+            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
+            let minus_rate_dot_2_leg3 = k1_leg3
+                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+            output[0][22] = -(g2_a1_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -9440,50 +9329,59 @@ impl DualV {
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
             output[0][4] = rate_dot_1_leg1; // zz_1_leg1R
+            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
+                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
+            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+            output[1][5] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
             output[0][20] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            // --- leg2
-            let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
-                + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
-            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
-            let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            output[1][5] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
             output[0][21] = g2_a1_leg2 * rate_dot_2_leg2; // zz_2_leg2R
-            let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            output[2][6] = rate_dot_1_leg3; // zz_1_leg3R
-            let minus_rate_dot_2_leg3 = k1_leg3
-                * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
-            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
+            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
+            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+            let a_y_platform = c_phi * dvy - s_phi * dvx;
+            output[2][1] = wz_by_a3 * a_y_platform
+                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
+            let a_x_platform = s_phi * dvy + c_phi * dvx;
+            output[0][2] = vx_by_a1 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform; // my_platformR
             output[1][20] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][21] = g2_a2_leg2 * rate_dot_2_leg2; // zz_2_leg2R
-            let rate_dot_2_leg4 = k1_leg4
-                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
-            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
+            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
+            let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+            output[1][25] = INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2; // my_2_leg2
             output[0][25] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             output[0][0] = wz_by_a1 * dwz; // zz_platformR
             output[1][0] = -(minus_wz_by_a2 * dwz); // zz_platformR
-            let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            // --- platform
-            let a_y_platform = c_phi * dvy - s_phi * dvx;
-            let mx_platform_on_q1_leg3 = wz_by_a3 * a_y_platform
-                - (vy_by_a3 * inv_r_p_a_arm_x_leg1
-                    + vx_by_a3 * inv_r_p_a_arm_y_leg3);
-            output[2][1] = mx_platform_on_q1_leg3;
-            let a_x_platform = s_phi * dvy + c_phi * dvx;
-            let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
-            output[0][2] = my_platform_on_q1_leg1; // my_platformR
+            output[0][1] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
+                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
+            output[0][3] = vx_by_a1 * dvx - minus_vy_by_a1 * dvy; // m_platformR
+            output[1][1] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
+                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_platform
+            output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
+                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                + minus_wz_by_a2 * a_x_platform; // my_platformR
+            output[1][3] = vx_by_a2 * dvx - minus_vy_by_a2 * dvy; // m_platformR
+            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
+            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
+            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
+            // --- leg4
+            let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+            output[0][7] = -(g1_a1_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
+            let rate_dot_2_leg4 = k1_leg4
+                * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            output[0][23] = g2_a1_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             output[1][7] = -(g1_a2_leg4 * minus_rate_dot_1_leg4); // zz_1_leg4R
             output[2][7] = minus_g1_a3_leg4 * minus_rate_dot_1_leg4; // zz_1_leg4R
             output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
@@ -9496,6 +9394,12 @@ impl DualV {
                 g1_a1_leg4,
                 minus_rate_1_leg4,
             ); // fs_1_leg4
+            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
+            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
+                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
             output[1][15] = -::overact::math::wide::signed(
                 g1_a2_leg4,
                 minus_rate_1_leg4,
@@ -9504,45 +9408,13 @@ impl DualV {
                 minus_g1_a3_leg4,
                 minus_rate_1_leg4,
             ); // fs_1_leg4
+            output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
+            output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
             output[2][23] = g2_a3_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            output[0][24] = INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1; // my_2_leg1
-            output[1][24] = -(g2_a2_leg1 * a2_x_leg1); // my_2_leg1
             output[0][26] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
             output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
-            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
-            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
-            let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
-            output[2][0] = zz_platform_on_q1_leg3; // zz_platformR
-            let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
-            output[2][2] = -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform); // my_platformR
-            let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
-                + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
-                + minus_wz_by_a2 * a_x_platform;
-            output[1][2] = my_platform_on_q1_leg2; // my_platformR
-            output[2][3] = R_P * wz_by_a3_a_x_platform; // m_platformR
-            let mx_platform_on_q1_leg1 = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
-                - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform;
-            output[0][1] = mx_platform_on_q1_leg1;
-            let mx_platform_on_q1_leg2 = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
-                - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform;
-            output[1][1] = mx_platform_on_q1_leg2;
-            let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
-            output[0][3] = m_platform_on_q1_leg1; // m_platformR
-            let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
-            output[1][3] = m_platform_on_q1_leg2; // m_platformR
-            let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
-            output[0][22] = -minus_zz_2_leg3_on_q1_leg1; // zz_2_leg3R
-            let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
-            output[1][22] = -minus_zz_2_leg3_on_q1_leg2; // zz_2_leg3R
-            let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
-            let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
-            output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
-                - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
             output[0][32] = -::overact::math::wide::signed(
@@ -9570,14 +9442,6 @@ impl DualV {
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
-            output[0][34] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][34] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
             output[0][35] = ::overact::math::wide::signed(
@@ -9589,11 +9453,21 @@ impl DualV {
                 off_2_leg4_on_q1_leg2,
                 qd_2_leg4,
             ); // fs_2_leg4
+            let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+            output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
             output[2][35] = ::overact::math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 qd_2_leg4,
             ); // fs_2_leg4
+            output[0][34] = -::overact::math::wide::signed(
+                g2_a1_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
+            output[1][34] = -::overact::math::wide::signed(
+                g2_a2_leg3,
+                minus_qd_2_leg3,
+            ); // fs_2_leg3
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
             output[0][44] = ::overact::math::wide::signed(
@@ -9623,22 +9497,11 @@ impl DualV {
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
             output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
-            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
+            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+            output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
-            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
-            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][46] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[2][47] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][46] = ::overact::math::wide::signed(
                 wz_by_a1_minus_g2_a1_leg3,
                 qd_3_leg3,
@@ -9647,42 +9510,30 @@ impl DualV {
                 wz_by_a1_minus_g2_a1_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
-            let fv_3_leg3_on_q1_leg1 = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3;
-            ::overact::guard::size(fv_3_leg3_on_q1_leg1, 1e100)?;
-            output[0][42] = fv_3_leg3_on_q1_leg1;
+            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+            output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][47] = -::overact::math::wide::signed(
-                g2_a2_minus_wz_by_a2_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][46] = -::overact::math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
-            let minus_fv_3_leg3_on_q1_leg2 = qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3;
-            ::overact::guard::size(minus_fv_3_leg3_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(dvx, 1e100)?;
-            ::overact::guard::size(m_platform_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(m_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg1, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg2, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg3, 1e100)?;
-            ::overact::guard::size(minus_a_on_f1_leg4, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg1, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg2, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg3, 1e100)?;
-            ::overact::guard::size(a_on_f2_leg4, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(mx_platform_on_q1_leg3, 1e100)?;
-            ::overact::guard::size(my_platform_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(my_platform_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(wz_by_a3_a_x_platform, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg3_on_q1_leg2, 1e100)?;
-            output[1][42] = -minus_fv_3_leg3_on_q1_leg2; // fv_3_leg3
+            output[1][47] = -::overact::math::wide::signed(
+                g2_a2_minus_wz_by_a2_leg4,
+                qd_3_leg4,
+            ); // fs_3_leg4
+            let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+            output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
+            output[2][46] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg3,
+            ); // fs_3_leg3
+            let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
+            output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
+            output[2][47] = ::overact::math::wide::signed(
+                wz_by_a3_minus_g2_a3_leg4,
+                qd_3_leg4,
+            ); // fs_3_leg4
             ::core::result::Result::Ok(())
         })
     }
@@ -9909,42 +9760,42 @@ impl DualV {
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -9967,11 +9818,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             // --- leg1
             let half_d_y_leg1 = 0.5 * d_y_leg1;
             let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -9997,7 +9844,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
@@ -10021,7 +9868,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_3 = 1.0 / pivot_3;
@@ -10210,31 +10057,31 @@ impl DualV {
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         // --- leg3
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_x_leg3 = pose[0] + p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
@@ -10255,11 +10102,7 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
@@ -10337,25 +10180,25 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -10364,25 +10207,25 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -10477,22 +10320,22 @@ impl DualV {
         // --- leg1
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
@@ -10501,11 +10344,7 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
@@ -10545,7 +10384,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 19 guards, 1 negation, 575 intermediates.
+    /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 575 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 141 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
@@ -10633,20 +10472,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -10683,7 +10508,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -10691,7 +10516,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -10700,7 +10525,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -10941,10 +10766,10 @@ impl DualV {
                 joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -11179,11 +11004,7 @@ impl DualV {
                 - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076041257,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -11202,7 +11023,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368900079006,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -11246,7 +11067,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.30769284902009914,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t3 = t2 / pivot_3;
@@ -11271,7 +11092,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 2 negations, 748 intermediates.
+    /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 28 guards, 2 negations, 748 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -11324,63 +11145,59 @@ impl DualV {
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let t1_leg2 = 0.3950502153918333 + half_d_x_leg4_minus_p_x_leg3;
             let d_x_leg2 = t1_leg2 + t1_leg2;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = t1_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg1
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
@@ -11422,14 +11239,14 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let l_3_2 = schur_2_3 / pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_3 = 1.0 / pivot_3;
@@ -11447,29 +11264,27 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = inv_pivot_3 * t3;
+            ::overact::guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = t2 / pivot_2 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED
                 * rate_1_squared_leg1;
@@ -11483,7 +11298,6 @@ impl DualV {
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -11491,7 +11305,6 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED
                 * rate_1_squared_leg2;
@@ -11508,14 +11321,12 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED
                 * rate_1_squared_leg3;
@@ -11529,7 +11340,6 @@ impl DualV {
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -11537,7 +11347,6 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let l_ab_squared_rate_1_squared_leg4 = L_AB_SQUARED
                 * rate_1_squared_leg4;
@@ -11561,7 +11370,6 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
-            ::overact::guard::size(dwz, 1e100)?;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
             let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
             // --- leg1
@@ -11759,11 +11567,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
-            ::overact::guard::size(t9, 1e100)?;
+            ::overact::guard::size(t9, 1e60)?;
             let t10 = t7 / pivot_2 - l_3_2 * t9;
-            ::overact::guard::size(t10, 1e100)?;
+            ::overact::guard::size(t10, 1e60)?;
             let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
-            ::overact::guard::size(t11, 1e100)?;
+            ::overact::guard::size(t11, 1e60)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
@@ -11865,20 +11673,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -11917,7 +11711,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -11925,7 +11719,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -11934,7 +11728,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -12160,10 +11954,10 @@ impl DualV {
                 joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
+            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -12359,11 +12153,7 @@ impl DualV {
                 - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076041257,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -12382,7 +12172,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368900079006,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -12426,7 +12216,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.30769284902009914,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t3 = t2 / pivot_3;
@@ -12451,7 +12241,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 2 negations, 665 intermediates.
+    /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 28 guards, 2 negations, 665 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
@@ -12496,14 +12286,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + t1_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -12517,14 +12307,14 @@ impl DualV {
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
             let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
@@ -12537,14 +12327,14 @@ impl DualV {
             let half_d_y_leg3 = 0.5 * d_y_leg3;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
             let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
@@ -12553,14 +12343,14 @@ impl DualV {
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
@@ -12575,11 +12365,7 @@ impl DualV {
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let l_3_1 = s_1_3 / s_1_1;
             let s_2_3 = g1_vy_leg3 * g1_wz_leg3
                 - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
@@ -12593,7 +12379,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -12601,7 +12387,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_3 = 1.0 / pivot_3;
@@ -12619,29 +12405,27 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = inv_pivot_3 * t3;
+            ::overact::guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
-            ::overact::guard::size(bias_a_end_y_leg3, 1e100)?;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
-            ::overact::guard::size(bias_a_end_x_leg1, 1e100)?;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = inv_pivot_2 * t2 - l_3_2 * wz;
+            ::overact::guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_2_leg1, 1e100)?;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-            ::overact::guard::size(rate_1_leg1, 1e100)?;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
@@ -12652,7 +12436,6 @@ impl DualV {
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(rate_2_leg2, 1e100)?;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
@@ -12660,7 +12443,6 @@ impl DualV {
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
-            ::overact::guard::size(minus_rate_1_leg2, 1e100)?;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
@@ -12674,14 +12456,12 @@ impl DualV {
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_2_leg3, 1e100)?;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
-            ::overact::guard::size(rate_1_leg3, 1e100)?;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let t2_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
@@ -12692,7 +12472,6 @@ impl DualV {
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(rate_2_leg4, 1e100)?;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
@@ -12700,7 +12479,6 @@ impl DualV {
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
-            ::overact::guard::size(minus_rate_1_leg4, 1e100)?;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
@@ -12721,7 +12499,6 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
-            ::overact::guard::size(dwz, 1e100)?;
             let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
             // --- leg1
@@ -12885,11 +12662,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
-            ::overact::guard::size(t9, 1e100)?;
+            ::overact::guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
-            ::overact::guard::size(t10, 1e100)?;
+            ::overact::guard::size(t10, 1e60)?;
             let t11 = t1_platform / s_1_1 - l_2_1 * t10 - l_3_1 * t9;
-            ::overact::guard::size(t11, 1e100)?;
+            ::overact::guard::size(t11, 1e60)?;
             ::core::result::Result::Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
@@ -12970,20 +12747,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -13011,7 +12774,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -13019,7 +12782,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -13028,7 +12791,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let g1_vx_leg = l2_x_leg / det_leg;
                     let masses_leg_1_1 = own_parameters[1]
                         + L_AB_SQUARED * own_parameters[0] + own_parameters[2];
@@ -13141,14 +12904,14 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let masses_leg1_1_1 = parameters[0] + L_AB_SQUARED * parameters[8]
@@ -13164,13 +12927,13 @@ impl DualV {
         let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
         let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let g2_vx_leg2 = l1_x_leg2 / det_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
@@ -13193,14 +12956,14 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let masses_leg3_1_1 = parameters[30] + L_AB_SQUARED * parameters[38]
@@ -13217,13 +12980,13 @@ impl DualV {
                 * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[35]);
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -13402,20 +13165,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -13440,7 +13189,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -13448,7 +13197,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -13457,7 +13206,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
@@ -13562,14 +13311,14 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
@@ -13579,13 +13328,13 @@ impl DualV {
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -13609,14 +13358,14 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
@@ -13633,13 +13382,13 @@ impl DualV {
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -13841,20 +13590,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -13891,7 +13626,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -13899,7 +13634,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -13908,7 +13643,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_x_leg = p_y_leg * twist[2];
@@ -14091,20 +13826,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
@@ -14143,7 +13864,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -14151,7 +13872,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -14160,7 +13881,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -14345,20 +14066,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- the legs' own
                     let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
@@ -14397,7 +14104,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -14405,7 +14112,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -14414,7 +14121,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let masses_leg_1_1 = own_parameters[1]
@@ -14618,7 +14325,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 612 intermediates.
+    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 20 guards, 612 intermediates.
     /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 155 of each leg.
     /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
     ///
@@ -14695,20 +14402,6 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 4] = [
-                    0.15606475932928948, 0.15606475932928943, 0.15606475932928943,
-                    0.15606475932928948,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 4] = [
-                    0.25235556276083826, 0.25235556276083837, 0.25235556276083837,
-                    0.25235556276083826,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 4] = [
-                    0.07839913810297301, 0.078399138102973, 0.078399138102973, 0.07839913810297301,
-                ];
                 for at in ::overact::lanes::places::<V, 4>(lanes) {
                     // --- the legs' own
                     let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
@@ -14749,7 +14442,7 @@ impl DualV {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1561; 4],
                         &LEGS,
                         at,
                     );
@@ -14757,7 +14450,7 @@ impl DualV {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2524; 4],
                         &LEGS,
                         at,
                     );
@@ -14766,7 +14459,7 @@ impl DualV {
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
@@ -14999,14 +14692,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
@@ -15072,13 +14765,13 @@ impl DualV {
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
@@ -15140,14 +14833,14 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
@@ -15214,13 +14907,13 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -15294,7 +14987,7 @@ impl DualV {
             let det_ja = g1_wz_leg3 * t2;
             ::overact::guard::platform(
                 det_ja,
-                3.5376915986291904,
+                3.538,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let half_per_det_ja = 0.5 / det_ja;
@@ -15384,7 +15077,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 1 negation, 193 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
     /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
@@ -15407,25 +15100,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -15434,34 +15127,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
@@ -15483,7 +15172,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -15513,23 +15202,20 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t4 = t3 / pivot_3;
+            ::overact::guard::size(t4, 1e60)?;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            let t7 = g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4;
-            ::overact::guard::size(t7, 1e100)?;
-            let t8 = g1_wz_leg2 * t4
-                - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5);
-            ::overact::guard::size(t8, 1e100)?;
-            let t9 = g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4;
-            ::overact::guard::size(t9, 1e100)?;
-            let t10 = minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
-                + minus_g1_wz_leg4 * t4;
-            ::overact::guard::size(t10, 1e100)?;
-            ::core::result::Result::Ok([t7, t8, t9, -t10])
+            ::core::result::Result::Ok([
+                g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
+                g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
+                g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
+                -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
+                    + minus_g1_wz_leg4 * t4),
+            ])
         })
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -15599,22 +15285,22 @@ impl DualV {
         // --- leg1
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
@@ -15623,11 +15309,7 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(
-            det_ja,
-            3.5376915986291904,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let t3 = minus_g1_vy_leg4 * half_per_det_ja;
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;

@@ -266,13 +266,9 @@ impl FiveBar {
         let s1_right_minus_s1_left = s1_right - s1_left;
         let t2 = L_1 * s1_right_minus_s1_left;
         let t3 = t1 * t1 + t2 * t2;
-        ::overact::guard::platform(
-            t3,
-            0.17842702766001217,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t3, 0.1784, ::overact::ActuatorGroup::All)?;
         let t4 = (L_2_SQUARED - L_2 * t3) / t3;
-        ::overact::guard::reach(t4, 0.10028325483901489, "left")?;
+        ::overact::guard::reach(t4, 0.1003, "left")?;
         let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
             l_1_c1_minus_half_left + 0.5 * t1 - t2 * t5,
@@ -306,7 +302,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -319,7 +315,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -371,7 +367,7 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -382,7 +378,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -432,12 +428,12 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
@@ -447,12 +443,12 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -462,11 +458,7 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
         let missed_1 = ::overact::math::atan2(
             l1_x_left * s_actuator_1 - l1_y_left * c_actuator_1,
@@ -508,12 +500,12 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
@@ -523,12 +515,12 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -567,8 +559,8 @@ impl FiveBar {
         ] = ::overact::math::sin_cos_all([
             q1_plus_q2_left, joints[1], q1_plus_q2_right, joints[3],
         ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        ::overact::guard::leg(s2_left, 0.9997, "left")?;
+        ::overact::guard::leg(s2_right, 0.9997, "right")?;
         let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
         let k1_right = INV_L_1 / s2_right;
@@ -618,15 +610,15 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -636,11 +628,7 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
         ::core::result::Result::Ok([
             [-(g1_vy_right * t2), -(minus_g1_vy_left * t2)],
@@ -790,12 +778,12 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -814,12 +802,12 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -872,10 +860,10 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -907,10 +895,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -970,12 +958,12 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
@@ -985,12 +973,12 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -1000,11 +988,7 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
         ::core::result::Result::Ok([
             -(t2
@@ -1053,12 +1037,12 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
@@ -1068,12 +1052,12 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -1083,11 +1067,7 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629323,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
         // --- left
         let g2_vx_left = l1_x_left * k_left;
@@ -1191,10 +1171,10 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1202,10 +1182,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let m_platform_on_vy = acceleration[1] + 9.81;
             output[1][24] = m_platform_on_vy;
             // --- left
@@ -1434,8 +1414,8 @@ impl FiveBar {
             (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[0], joints[2],
             ]);
-            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            ::overact::guard::leg(s2_left, 0.9997, "left")?;
+            ::overact::guard::leg(s2_right, 0.9997, "right")?;
             let m_platform_on_vy = acceleration[1] + 9.81;
             output[1][24] = m_platform_on_vy;
             // --- left
@@ -1665,10 +1645,10 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1676,10 +1656,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -1701,11 +1681,7 @@ impl FiveBar {
             let g1_vx_right = l2_x_right * k_right;
             output[0][18] = g1_vx_right; // off_1_right
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]); // fv_1_left
             output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
             output[0][5] = -::overact::math::wide::signed(
@@ -1951,10 +1927,10 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1963,10 +1939,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             // --- left
             let k_left = 1.0 / det_left;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -1987,7 +1963,7 @@ impl FiveBar {
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 49.05 * l1_x_left;
@@ -2185,8 +2161,8 @@ impl FiveBar {
             (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[0], joints[2],
             ]);
-            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            ::overact::guard::leg(s2_left, 0.9997, "left")?;
+            ::overact::guard::leg(s2_right, 0.9997, "right")?;
             let inv_s2_left = 1.0 / s2_left;
             let fk1_x_left = c2_left * inv_s2_left;
             let inv_s2_right = 1.0 / s2_right;
@@ -2199,7 +2175,7 @@ impl FiveBar {
                 - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
             ::overact::guard::platform(
                 det_ja,
-                0.9046203494251691,
+                0.9046,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 9.81 * c1_left;
@@ -2419,10 +2395,10 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -2431,10 +2407,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let k_left = 1.0 / det_left;
@@ -2453,12 +2429,12 @@ impl FiveBar {
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::Kept,
             )?;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::All,
             )?;
             output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
@@ -2658,10 +2634,10 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -2669,10 +2645,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             output[1][0] = acceleration[1] + 9.81; // m_platformR
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -2851,8 +2827,8 @@ impl FiveBar {
         (s1_right, c1_right)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[0], joints[2],
         ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        ::overact::guard::leg(s2_left, 0.9997, "left")?;
+        ::overact::guard::leg(s2_right, 0.9997, "right")?;
         output[1][0] = acceleration[1] + 9.81; // m_platformR
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
@@ -3030,10 +3006,10 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3041,10 +3017,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
@@ -3065,11 +3041,7 @@ impl FiveBar {
             let minus_g1_vy_left = l2_y_left * k_left;
             output[1][11] = -minus_g1_vy_left; // off_1_left
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]); // zz_1_leftR
             output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]); // zz_1_leftR
             output[0][2] = g1_vx_right * actuator_accelerations[1]; // zz_1_rightR
@@ -3265,10 +3237,10 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3277,10 +3249,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let k_right = 1.0 / det_right;
@@ -3300,7 +3272,7 @@ impl FiveBar {
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let a1_y_left = 49.05 * l1_x_left;
@@ -3475,8 +3447,8 @@ impl FiveBar {
         (s1_left, c1_left)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[2], joints[0],
         ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        ::overact::guard::leg(s2_left, 0.9997, "left")?;
+        ::overact::guard::leg(s2_right, 0.9997, "right")?;
         let inv_s2_right = 1.0 / s2_right;
         let fk1_x_right = c2_right * inv_s2_right;
         let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
@@ -3488,11 +3460,7 @@ impl FiveBar {
         let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
         let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
             - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
-        ::overact::guard::platform(
-            det_ja,
-            0.9046203494251691,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 0.9046, ::overact::ActuatorGroup::Kept)?;
         let l_1_per_det_ja = L_1 / det_ja;
         let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
         let t1_platform = acceleration[1] + 9.81;
@@ -3673,10 +3641,10 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3685,10 +3653,10 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
@@ -3708,12 +3676,12 @@ impl FiveBar {
                 - minus_g1_vy_left * g1_vx_right;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::Kept,
             )?;
             ::overact::guard::platform(
                 det_ja,
-                22.615508735629323,
+                22.62,
                 ::overact::ActuatorGroup::All,
             )?;
             output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
@@ -3861,15 +3829,15 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -3946,10 +3914,10 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -3999,12 +3967,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             // --- left
@@ -4058,11 +4026,7 @@ impl FiveBar {
                 + inv_l_2_mx_2_right;
             let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             let t2 = (g2_vy_left * force_on_u2_left
                 + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
                 / t1;
@@ -4134,8 +4098,8 @@ impl FiveBar {
             (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3],
             ]);
-            ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-            ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+            ::overact::guard::leg(s2_left, 0.9997, "left")?;
+            ::overact::guard::leg(s2_right, 0.9997, "right")?;
             // --- left
             let c12_left = c1_left * c2_left - s1_left * s2_left;
             let s12_left = s1_left * c2_left + c1_left * s2_left;
@@ -4227,11 +4191,7 @@ impl FiveBar {
             );
             let force_on_u2_right = moment2_z_right - minus_tau_2_right;
             let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629227,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             let t2 = (force_y_platform
                 - (minus_g2_vy_left * force_on_u2_left
                     + minus_g2_vy_right * force_on_u2_right)) / t1;
@@ -4309,7 +4269,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
@@ -4320,7 +4280,7 @@ impl FiveBar {
             let bias_a1_x_left = 49.05 * l1_y_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
             // --- right
@@ -4330,12 +4290,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -4344,11 +4304,7 @@ impl FiveBar {
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             let t2 = 1.0 / t1;
             let g2_vy_left = l1_y_left * k_left;
             let vy = t2
@@ -4517,12 +4473,12 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let a1_y_left = 49.05 * l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let l2_x_left = d_x_left - l1_x_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -4567,12 +4523,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let g1_vx_right = l2_x_right / det_right;
             // --- left
             let rate_dot_2_left = k_left
@@ -4620,11 +4576,7 @@ impl FiveBar {
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
             let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             let t2 = (g2_vy_left * force_on_u2_left
                 + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
                 / t1;
@@ -4687,8 +4639,8 @@ impl FiveBar {
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
         ]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        ::overact::guard::leg(s2_left, 0.9997, "left")?;
+        ::overact::guard::leg(s2_right, 0.9997, "right")?;
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
@@ -4766,11 +4718,7 @@ impl FiveBar {
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
         let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
         let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(
-            t1,
-            22.615508735629227,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
         let t2 = (minus_g2_vy_left * minus_force_on_u2_left
             + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
         let force_x_platform = acceleration[0] * base_parameters[0];
@@ -4843,7 +4791,7 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
@@ -4859,7 +4807,7 @@ impl FiveBar {
                 ) + base_parameters[11];
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
             // --- right
@@ -4869,12 +4817,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -4883,11 +4831,7 @@ impl FiveBar {
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                t1,
-                22.615508735629323,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
             let t2 = 1.0 / t1;
             let g2_vy_left = l1_y_left * k_left;
             let vy = t2
@@ -5030,11 +4974,11 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let g2_vx_left = l1_x_left / det_left;
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left / det_left;
@@ -5050,12 +4994,12 @@ impl FiveBar {
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let g1_vx_right = l2_x_right / det_right;
         let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
             + parameters[15];
@@ -5133,11 +5077,11 @@ impl FiveBar {
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let g2_vx_left = l1_x_left * k_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -5151,12 +5095,12 @@ impl FiveBar {
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        ::overact::guard::leg(det_right, 0.04998, "right")?;
         let g1_vx_right = l2_x_right / det_right;
         let minus_g2_vx_right = l1_x_right / det_right;
         let s2_right = 20.0 * det_right;
@@ -5243,11 +5187,11 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let g2_vx_left = l1_x_left * k_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -5306,12 +5250,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -5418,11 +5362,11 @@ impl FiveBar {
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let g2_vx_left = l1_x_left * k_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -5479,12 +5423,12 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
             let h_right = ::overact::math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -5638,15 +5582,15 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let minus_g1_vx_left = l2_x_left / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
@@ -5855,14 +5799,14 @@ impl FiveBar {
             ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.24984375, "left")?;
+            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
             let h_left = ::overact::math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+            ::overact::guard::leg(det_left, 0.04998, "left")?;
             ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, 0.24984375, "right")?;
-            ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
+            ::overact::guard::leg(det_right, 0.04998, "right")?;
             let g2_vx_left = l1_x_left / det_left;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left / det_left;

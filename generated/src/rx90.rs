@@ -27,8 +27,8 @@
 /// | `mass_matrix_base` | 226, 5 sc |  |
 /// | `bias` | 491, 5 sc, 6 sg |  |
 /// | `bias_base` | 470, 5 sc, 6 sg |  |
-/// | `forward_dynamics` | 884, 5 sc, 6 sg, 20 gd |  |
-/// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 18 gd |  |
+/// | `forward_dynamics` | 884, 5 sc, 6 sg, 19 gd |  |
+/// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 17 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
@@ -3325,7 +3325,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 20 guards, 888 intermediates.
+    /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 19 guards, 888 intermediates.
     ///
     /// # Errors
     /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
@@ -3846,26 +3846,25 @@ impl Rx90 {
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
             ::overact::guard::mass(pivot_6)?;
-            ::overact::guard::size(inv_pivot_1, 1e100)?;
-            ::overact::guard::size(inv_pivot_2, 1e100)?;
-            ::overact::guard::size(inv_pivot_3, 1e100)?;
-            ::overact::guard::size(inv_pivot_4, 1e100)?;
-            ::overact::guard::size(inv_pivot_5, 1e100)?;
-            ::overact::guard::size(pivot_3, 1e100)?;
-            ::overact::guard::size(pivot_4, 1e100)?;
-            ::overact::guard::size(pivot_5, 1e100)?;
-            ::overact::guard::size(pivot_6, 1e100)?;
+            ::overact::guard::size(inv_pivot_1, 1e60)?;
+            ::overact::guard::size(inv_pivot_2, 1e60)?;
+            ::overact::guard::size(inv_pivot_3, 1e60)?;
+            ::overact::guard::size(inv_pivot_4, 1e60)?;
+            ::overact::guard::size(inv_pivot_5, 1e60)?;
+            ::overact::guard::size(pivot_4, 1e60)?;
+            ::overact::guard::size(pivot_5, 1e60)?;
+            ::overact::guard::size(pivot_6, 1e60)?;
             let t6 = t5 / pivot_6;
-            ::overact::guard::size(t6, 1e100)?;
+            ::overact::guard::size(t6, 1e60)?;
             let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
-            ::overact::guard::size(t7, 1e100)?;
+            ::overact::guard::size(t7, 1e60)?;
             let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
-            ::overact::guard::size(t8, 1e100)?;
+            ::overact::guard::size(t8, 1e60)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-            ::overact::guard::size(t9, 1e100)?;
+            ::overact::guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
-            ::overact::guard::size(t10, 1e100)?;
+            ::overact::guard::size(t10, 1e60)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
             ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
@@ -3881,7 +3880,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 18 guards, 859 intermediates.
+    /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 17 guards, 859 intermediates.
     ///
     /// # Errors
     /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
@@ -4404,24 +4403,23 @@ impl Rx90 {
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
             ::overact::guard::mass(pivot_6)?;
-            ::overact::guard::size(inv_pivot_1, 1e100)?;
-            ::overact::guard::size(inv_pivot_2, 1e100)?;
-            ::overact::guard::size(inv_pivot_3, 1e100)?;
-            ::overact::guard::size(pivot_3, 1e100)?;
-            ::overact::guard::size(pivot_4, 1e100)?;
-            ::overact::guard::size(pivot_5, 1e100)?;
-            ::overact::guard::size(pivot_6, 1e100)?;
+            ::overact::guard::size(inv_pivot_1, 1e60)?;
+            ::overact::guard::size(inv_pivot_2, 1e60)?;
+            ::overact::guard::size(inv_pivot_3, 1e60)?;
+            ::overact::guard::size(pivot_4, 1e60)?;
+            ::overact::guard::size(pivot_5, 1e60)?;
+            ::overact::guard::size(pivot_6, 1e60)?;
             let t6 = t5 / pivot_6;
-            ::overact::guard::size(t6, 1e100)?;
+            ::overact::guard::size(t6, 1e60)?;
             let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
-            ::overact::guard::size(t7, 1e100)?;
+            ::overact::guard::size(t7, 1e60)?;
             let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
-            ::overact::guard::size(t8, 1e100)?;
+            ::overact::guard::size(t8, 1e60)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-            ::overact::guard::size(t9, 1e100)?;
+            ::overact::guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
-            ::overact::guard::size(t10, 1e100)?;
+            ::overact::guard::size(t10, 1e60)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
             ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])

@@ -31,13 +31,13 @@
 /// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 21 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators` | 267, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 32 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 22 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
 /// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 21 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 10 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 4 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 32 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
+/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 22 gd | 134, 3 √, 3 sc, 3 at, 11 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 10 gd |  |
 /// | `inverse_dynamics` | 291, 3 √, 6 sg, 11 gd |  |
@@ -286,13 +286,9 @@ impl ThreeLegPoint {
         let t2 = HALF_RADIUS + L_1 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2)
             + radius_plus_l_1_c1_leg1;
         let t3 = t1 * t1 + t2 * t2;
-        ::overact::guard::platform(
-            t3,
-            0.17280000001530707,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(t3, 0.1728, ::overact::ActuatorGroup::All)?;
         let t4 = (L_1_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, 0.0833333333038058, "leg1")?;
+        ::overact::guard::reach(t4, 0.08333, "leg1")?;
         let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
             0.5 * t1 - l_1_s1_leg1 + t2 * t5, radius_plus_l_1_c1_leg1 - 0.5 * t2 + t1 * t5,
@@ -324,9 +320,9 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -341,9 +337,9 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
@@ -352,9 +348,9 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -411,9 +407,9 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -426,18 +422,18 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
@@ -493,14 +489,14 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -512,9 +508,9 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -523,15 +519,15 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -539,16 +535,12 @@ impl ThreeLegPoint {
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let missed_2 = ::overact::math::atan2(
             l1_x_leg2 * s_actuator_2 - l1_y_leg2 * c_actuator_2,
@@ -577,11 +569,7 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
             - minus_g1_vy_leg3 * missed_3 + minus_l_2_1 * t1) / pivot_2;
         ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
@@ -614,13 +602,13 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -632,30 +620,30 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -696,9 +684,9 @@ impl ThreeLegPoint {
         (s12_leg3, c12_leg3), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[3], q1_plus_q2_leg3, joints[5],
         ]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
         let k_leg1 = INV_L_1 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -745,13 +733,13 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -765,16 +753,16 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -782,15 +770,15 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
@@ -799,21 +787,13 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = inv_pivot_2 * (g1_vy_leg1 - minus_g1_vx_leg1 * minus_l_2_1);
         let t2 = inv_pivot_2 * (g1_vx_leg2 * minus_l_2_1 - minus_g1_vy_leg2);
@@ -989,12 +969,12 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1013,12 +993,12 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = 1.0 / det_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1036,12 +1016,12 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = 1.0 / det_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1091,12 +1071,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1128,12 +1108,12 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1169,12 +1149,12 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = 1.0 / det_leg3;
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1237,13 +1217,13 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -1255,39 +1235,35 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -1304,11 +1280,7 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
@@ -1356,13 +1328,13 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let inv_det_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * inv_det_leg1;
             let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -1375,9 +1347,9 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -1385,30 +1357,26 @@ impl ThreeLegPoint {
             let t2_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k1_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = t2_leg2 * k1_leg2;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let t2_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k1_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = t2_leg3 * k1_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg2
             let t3_leg2 = 3.608439182435161 * l2_y_leg2
@@ -1469,7 +1437,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
@@ -1541,12 +1509,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
@@ -1557,23 +1525,23 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -1827,9 +1795,9 @@ impl ThreeLegPoint {
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
@@ -2094,12 +2062,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
@@ -2109,23 +2077,23 @@ impl ThreeLegPoint {
             let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let d_y_leg3 = pose[0] - d_y_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -2152,11 +2120,7 @@ impl ThreeLegPoint {
             output[0][24] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -2179,7 +2143,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
@@ -2448,12 +2412,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -2464,21 +2428,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let k_leg1 = 1.0 / det_leg1;
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
@@ -2503,7 +2467,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.09578052481963,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -2752,9 +2716,9 @@ impl ThreeLegPoint {
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let k_leg1 = INV_L_1 / s2_leg1;
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
@@ -2773,7 +2737,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.095780524666612,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -2954,7 +2918,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 32 guards, 20 negations, 321 intermediates.
+    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 22 guards, 20 negations, 321 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
@@ -3020,12 +2984,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -3036,21 +3000,21 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let k_leg1 = 1.0 / det_leg1;
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
@@ -3075,7 +3039,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.09578052481963,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             // --- leg3
@@ -3089,11 +3053,7 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
@@ -3106,7 +3066,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -3163,23 +3123,11 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -3189,10 +3137,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -3207,10 +3155,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -3227,74 +3175,34 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
             output[0][0] = -minus_rate_dot_1_leg1; // zz_1_leg1
             output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
-            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
-            // --- leg1
-            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
-                + bias_a_on_f2_leg1;
-            let minus_rate_dot_2_leg1 = k_leg1
-                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            ::overact::guard::size(minus_zz_2_leg1_on_q1_leg1, 1e100)?;
-            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
-            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let my_2_leg1_on_q1_leg1 = INV_L_1 * a_on_f2_leg1
-                + g2_a1_leg1 * minus_a2_x_leg1;
-            ::overact::guard::size(my_2_leg1_on_q1_leg1, 1e100)?;
-            output[0][7] = my_2_leg1_on_q1_leg1;
-            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
-            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
-            // --- leg2
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
-            let minus_rate_dot_2_leg2 = k_leg2
-                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
-            output[0][15] = zz_2_leg2_on_q1_leg1;
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            let my_2_leg2_on_q1_leg2 = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
-            output[1][17] = my_2_leg2_on_q1_leg2;
-            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            ::overact::guard::size(minus_zz_2_leg2_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(my_2_leg2_on_q1_leg2, 1e100)?;
-            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
-            // --- leg3
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[0][19] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            ); // fs_2_leg2
             let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
             let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-            ::overact::guard::size(zz_1_leg3_on_q1_leg1, 1e100)?;
-            output[0][20] = zz_1_leg3_on_q1_leg1;
-            output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
-            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
-            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-            ::overact::guard::size(zz_1_leg3_on_q1_leg2, 1e100)?;
-            output[1][20] = zz_1_leg3_on_q1_leg2;
-            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
                 - minus_bias_a_on_f2_leg3;
-            let rate_dot_2_leg3 = k_leg3
-                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
-            ::overact::guard::size(zz_2_leg3_on_q1_leg1, 1e100)?;
-            output[0][25] = zz_2_leg3_on_q1_leg1;
+            output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
@@ -3302,6 +3210,16 @@ impl ThreeLegPoint {
                 g2_a2_leg3 - g1_a2_leg3,
                 qd_2_leg3,
             ); // fs_2_leg3
+            // --- leg1
+            let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+            let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
+                + bias_a_on_f2_leg1;
+            let minus_rate_dot_2_leg1 = k_leg1
+                * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+            output[0][5] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1
+            let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
             // --- platform
             let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx
                 + minus_vy_by_a1 * dvy;
@@ -3313,29 +3231,54 @@ impl ThreeLegPoint {
                 + minus_vy_by_a2 * dvy;
             output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
-            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][10] = -minus_rate_dot_1_leg2; // zz_1_leg2
+            output[1][11] = -minus_rate_dot_1_leg2; // ia_1_leg2
+            let minus_rate_dot_2_leg2 = k_leg2
+                * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+            output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
             output[1][16] = L_1
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
-            output[0][26] = -(t1_platform
-                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
-            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-            ::overact::guard::size(zz_2_leg3_on_q1_leg2, 1e100)?;
-            output[1][25] = zz_2_leg3_on_q1_leg2;
-            output[1][26] = -(t2_platform
-                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
-            let minus_my_2_leg3_on_q1_leg2 = g1_a2_leg3 * a_on_f2_leg3
-                + g2_a2_leg3 * a_on_f1_leg3;
-            output[1][27] = -minus_my_2_leg3_on_q1_leg2; // my_2_leg3
-            let minus_my_2_leg3_on_q1_leg1 = g1_a1_leg3 * a_on_f2_leg3
-                + g2_a1_leg3 * a_on_f1_leg3;
-            ::overact::guard::size(minus_my_2_leg3_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(minus_my_2_leg3_on_q1_leg2, 1e100)?;
-            output[0][27] = -minus_my_2_leg3_on_q1_leg1; // my_2_leg3
+            output[1][19] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            ); // fs_2_leg2
+            output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
+            let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+            output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
+            output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+            output[0][15] = zz_2_leg2_on_q1_leg1;
+            output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
             output[0][29] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             ); // fs_2_leg3
+            // --- leg3
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+            output[0][20] = zz_1_leg3_on_q1_leg1;
+            output[0][21] = zz_1_leg3_on_q1_leg1; // ia_1_leg3
+            let rate_dot_2_leg3 = k_leg3
+                * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+            output[0][25] = zz_2_leg3_on_q1_leg1;
+            output[0][26] = -(t1_platform
+                + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)); // mx_2_leg3
+            output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+            output[1][20] = zz_1_leg3_on_q1_leg2;
+            output[1][21] = zz_1_leg3_on_q1_leg2; // ia_1_leg3
+            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+            output[1][25] = zz_2_leg3_on_q1_leg2;
+            output[1][26] = -(t2_platform
+                + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
+            output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
+            output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
             ::core::result::Result::Ok(())
@@ -3403,12 +3346,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
@@ -3419,23 +3362,23 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -3652,9 +3595,9 @@ impl ThreeLegPoint {
             (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
@@ -3880,12 +3823,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -3896,23 +3839,23 @@ impl ThreeLegPoint {
             let d_y_leg2 = half_x - t1_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -3937,11 +3880,7 @@ impl ThreeLegPoint {
             output[0][12] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -3964,7 +3903,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
@@ -4200,12 +4139,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4216,21 +4155,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -4255,7 +4194,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.09578052481963,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -4477,9 +4416,9 @@ impl ThreeLegPoint {
             (s1_leg2, c1_leg2), (s1_leg1, c1_leg1), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[2], joints[0], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -4498,7 +4437,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.095780524666612,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -4648,7 +4587,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 32 guards, 13 negations, 309 intermediates.
+    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 22 guards, 13 negations, 309 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
@@ -4718,12 +4657,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4734,21 +4673,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -4773,7 +4712,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.09578052481963,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             // --- leg3
@@ -4787,11 +4726,7 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
@@ -4804,7 +4739,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -4861,23 +4796,11 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
-            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
-                - g2_vy_leg2 * minus_vy_by_a2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -4887,10 +4810,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -4905,10 +4828,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
+            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
+            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4925,47 +4848,48 @@ impl ThreeLegPoint {
                     - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+            // --- leg2
+            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
+                + bias_a_on_f2_leg2;
+            let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2
+                - g2_vy_leg2 * minus_vy_by_a2;
+            output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
             output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
-            let minus_rate_dot_1_leg2 = k_leg2
-                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
+            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let rate_dot_1_leg3 = k_leg3
+                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+            output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
-            let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
-                + bias_a_on_f2_leg2;
+            output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
+            let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
             output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-            let rate_dot_1_leg3 = k_leg3
-                * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
-            ::overact::guard::size(zz_1_leg3_on_q1_leg1, 1e100)?;
-            output[0][3] = zz_1_leg3_on_q1_leg1; // zz_1_leg3R
+            let minus_rate_dot_1_leg2 = k_leg2
+                * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+            output[1][2] = -minus_rate_dot_1_leg2; // zz_1_leg2R
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+            output[0][16] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
+            output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
+            output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            let my_2_leg1_on_q1_leg1 = INV_L_1 * a_on_f2_leg1
-                + g2_a1_leg1 * minus_a2_x_leg1;
-            output[0][16] = my_2_leg1_on_q1_leg1;
-            let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
-            output[0][13] = -minus_zz_2_leg1_on_q1_leg1; // zz_2_leg1R
-            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            let my_2_leg2_on_q1_leg2 = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2;
-            output[1][17] = my_2_leg2_on_q1_leg2;
-            let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
-            output[1][14] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2R
-            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy); // m_platformR
+            output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
+            let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+            output[1][20] = ::overact::math::wide::signed(
+                g2_a2_leg2 - 1.0,
+                qd_2_leg2,
+            ); // fs_2_leg2
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -4973,39 +4897,28 @@ impl ThreeLegPoint {
                 - minus_bias_a_on_f2_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
-            output[0][15] = zz_2_leg3_on_q1_leg1; // zz_2_leg3R
+            output[0][15] = g2_a1_leg3 * rate_dot_2_leg3; // zz_2_leg3R
+            output[0][0] = -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy); // m_platformR
             output[1][0] = -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy); // m_platformR
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
+            output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
+            output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
+            output[0][20] = -::overact::math::wide::signed(
+                minus_g2_a1_leg2,
+                qd_2_leg2,
+            ); // fs_2_leg2
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
             output[0][21] = ::overact::math::wide::signed(
                 g2_a1_leg3 - g1_a1_leg3,
                 qd_2_leg3,
             ); // fs_2_leg3
-            let minus_my_2_leg3_on_q1_leg1 = g1_a1_leg3 * a_on_f2_leg3
-                + g2_a1_leg3 * a_on_f1_leg3;
-            output[0][18] = -minus_my_2_leg3_on_q1_leg1; // my_2_leg3
-            let minus_my_2_leg3_on_q1_leg2 = g1_a2_leg3 * a_on_f2_leg3
-                + g2_a2_leg3 * a_on_f1_leg3;
-            output[1][18] = -minus_my_2_leg3_on_q1_leg2; // my_2_leg3
-            let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
-            ::overact::guard::size(zz_1_leg3_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg1_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(minus_zz_2_leg2_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(zz_2_leg3_on_q1_leg1, 1e100)?;
-            output[1][3] = zz_1_leg3_on_q1_leg2; // zz_1_leg3R
-            let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
-            ::overact::guard::size(zz_2_leg3_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(my_2_leg1_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(my_2_leg2_on_q1_leg2, 1e100)?;
-            ::overact::guard::size(minus_my_2_leg3_on_q1_leg1, 1e100)?;
-            ::overact::guard::size(minus_my_2_leg3_on_q1_leg2, 1e100)?;
-            output[1][15] = zz_2_leg3_on_q1_leg2; // zz_2_leg3R
+            output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
+            output[1][21] = ::overact::math::wide::signed(
+                g2_a2_leg3 - g1_a2_leg3,
+                qd_2_leg3,
+            ); // fs_2_leg3
             ::core::result::Result::Ok(())
         })
     }
@@ -5058,30 +4971,30 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -5156,19 +5069,19 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -5176,11 +5089,7 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 15.1, ::overact::ActuatorGroup::Kept)?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
@@ -5238,14 +5147,14 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -5294,9 +5203,9 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -5305,7 +5214,7 @@ impl ThreeLegPoint {
             let t1_leg3 = y_plus_half_radius * INV_L_1;
             let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -5352,9 +5261,9 @@ impl ThreeLegPoint {
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = pose[0] - d_y_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -5362,7 +5271,7 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l2_y_leg3;
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -5426,18 +5335,14 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t1 = (t4_leg3 + force_y_platform + t2_platform * minus_l_2_1)
@@ -5489,9 +5394,9 @@ impl ThreeLegPoint {
             (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -5631,18 +5536,14 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848631333,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848631322,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t1 = (t2_leg3 + force_y_platform + t2_platform * minus_l_2_1)
@@ -5703,14 +5604,14 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let g1_vy_leg1 = l2_x_leg1 / det_leg1;
             let half_x = 0.5 * pose[0];
             let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
@@ -5722,32 +5623,32 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
@@ -5763,11 +5664,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -5777,7 +5674,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let vy = (g1_vy_leg1 * actuator_velocities[0]
@@ -5996,14 +5893,14 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -6050,9 +5947,9 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
@@ -6061,7 +5958,7 @@ impl ThreeLegPoint {
             let t1_leg3 = y_plus_half_radius * INV_L_1;
             let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -6104,9 +6001,9 @@ impl ThreeLegPoint {
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -6114,7 +6011,7 @@ impl ThreeLegPoint {
                 - 3.608439182435161 * l2_y_leg3;
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -6171,11 +6068,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
@@ -6183,7 +6076,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t1 = (t3_leg3 + force_y_platform + t1_platform * minus_l_2_1)
@@ -6233,9 +6126,9 @@ impl ThreeLegPoint {
             (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
+            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
+            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -6370,18 +6263,14 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848631333,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848631322,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
@@ -6441,14 +6330,14 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -6461,16 +6350,16 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg3
@@ -6478,16 +6367,16 @@ impl ThreeLegPoint {
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
@@ -6503,11 +6392,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(
-                s_1_1,
-                26.146658848896372,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
@@ -6518,7 +6403,7 @@ impl ThreeLegPoint {
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                26.146658848896372,
+                26.15,
                 ::overact::ActuatorGroup::All,
             )?;
             let vy = (g1_vy_leg1 * actuator_velocities[0]
@@ -6715,14 +6600,14 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
@@ -6743,9 +6628,9 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -6754,7 +6639,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
@@ -6782,9 +6667,9 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -6793,7 +6678,7 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
@@ -6890,13 +6775,13 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -6914,9 +6799,9 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -6925,7 +6810,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
@@ -6949,9 +6834,9 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -6960,7 +6845,7 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
@@ -7059,13 +6944,13 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7114,9 +6999,9 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7125,7 +7010,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -7168,16 +7053,16 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
@@ -7271,13 +7156,13 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7328,9 +7213,9 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7339,7 +7224,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -7381,9 +7266,9 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -7392,7 +7277,7 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -7510,18 +7395,6 @@ impl ThreeLegPoint {
                 ];
                 /// Names of the legs, for errors.
                 static LEGS: [&::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
-                /// What must not vanish, at home.
-                static HOME_0: [::core::primitive::f64; 3] = [
-                    0.12249999999999998, 0.12249999999999998, 0.1224999999999999,
-                ];
-                /// What must not vanish, at home.
-                static HOME_1: [::core::primitive::f64; 3] = [
-                    0.2202040816326531, 0.2202040816326531, 0.22020408163265343,
-                ];
-                /// What must not vanish, at home.
-                static HOME_2: [::core::primitive::f64; 3] = [
-                    0.057484236969798944, 0.057484236969798944, 0.057484236969798944,
-                ];
                 for at in ::overact::lanes::places::<V, 3>(lanes) {
                     // --- the legs' own
                     let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
@@ -7555,7 +7428,7 @@ impl ThreeLegPoint {
                     ::overact::lanes::leg(
                         &mut failed,
                         rho_squared_leg,
-                        &HOME_0,
+                        &[0.1225; 3],
                         &LEGS,
                         at,
                     );
@@ -7563,7 +7436,7 @@ impl ThreeLegPoint {
                     ::overact::lanes::reach(
                         &mut failed,
                         h_squared_leg,
-                        &HOME_1,
+                        &[0.2202; 3],
                         &LEGS,
                         at,
                     );
@@ -7576,7 +7449,13 @@ impl ThreeLegPoint {
                     let s12_leg = INV_L_1 * l2_y_leg;
                     let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
                     let det_leg = rho_squared_leg * h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &HOME_2, &LEGS, at);
+                    ::overact::lanes::leg(
+                        &mut failed,
+                        det_leg,
+                        &[0.05748; 3],
+                        &LEGS,
+                        at,
+                    );
                     let k_leg = L_1 / det_leg;
                     let g1_vx_leg = minus_fk1_x_leg * k_leg;
                     let masses_leg_1_1 = own_parameters[1]
@@ -7716,14 +7595,14 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7769,9 +7648,9 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -7780,7 +7659,7 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -7821,15 +7700,15 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3 + INV_TWICE_L_1 * l1_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -8081,20 +7960,20 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -8288,20 +8167,20 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -8314,7 +8193,7 @@ impl ThreeLegPoint {
                 - g1_vy_leg1 * g1_vx_leg2;
             ::overact::guard::platform(
                 det_ja,
-                15.09578052481963,
+                15.1,
                 ::overact::ActuatorGroup::Kept,
             )?;
             let inv_det_ja = 1.0 / det_ja;
@@ -8330,7 +8209,7 @@ impl ThreeLegPoint {
             );
             ::overact::guard::platform(
                 norm_3,
-                1.7320508075688772,
+                1.732,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_norm_3 = 1.0 / norm_3;
@@ -8515,13 +8394,13 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -8533,29 +8412,29 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
@@ -8569,11 +8448,7 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
@@ -8581,11 +8456,7 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] + minus_l_2_1 * t1) / pivot_2;
         let t3 = inv_pivot_1 * t1 + minus_l_2_1 * t2;
@@ -8652,19 +8523,19 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.22020408163265315, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.22020408163265315, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.22020408163265315, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -8672,11 +8543,7 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(
-            det_ja,
-            15.09578052481963,
-            ::overact::ActuatorGroup::Kept,
-        )?;
+        ::overact::guard::platform(det_ja, 15.1, ::overact::ActuatorGroup::Kept)?;
         let inv_det_ja = 1.0 / det_ja;
         let t1 = minus_g1_vy_leg3 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
@@ -8687,11 +8554,7 @@ impl ThreeLegPoint {
         let norm_3 = ::overact::math::sqrt(
             1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
         );
-        ::overact::guard::platform(
-            norm_3,
-            1.7320508075688772,
-            ::overact::ActuatorGroup::All,
-        )?;
+        ::overact::guard::platform(norm_3, 1.732, ::overact::ActuatorGroup::All)?;
         let inv_norm_3 = 1.0 / norm_3;
         ::core::result::Result::Ok([
             [-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3],

@@ -185,14 +185,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + t1_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
@@ -245,13 +245,13 @@ impl DualV {
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let g2_vx_leg2 = l1_x_leg2 / det_leg2;
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -297,14 +297,14 @@ impl DualV {
             let d_y_leg3 = pose[1] - t1_leg3;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
@@ -356,14 +356,14 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -409,11 +409,7 @@ impl DualV {
                 + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -432,7 +428,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -474,7 +470,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t3 = t2 / pivot_3;

@@ -13,7 +13,7 @@
 /// |---|---|---|
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
 /// | `inverse_dynamics` | 479, 4 √, 1 sc, 12 sg, 17 gd |  |
-/// | `project_torques` | 191, 4 √, 1 sc, 19 gd |  |
+/// | `project_torques` | 191, 4 √, 1 sc, 16 gd |  |
 ///
 /// # Names
 ///
@@ -176,18 +176,18 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -198,18 +198,18 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -272,14 +272,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + t1_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
@@ -332,13 +332,13 @@ impl DualV {
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let g2_vx_leg2 = l1_x_leg2 / det_leg2;
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -384,14 +384,14 @@ impl DualV {
             let d_y_leg3 = pose[1] - t1_leg3;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
@@ -443,14 +443,14 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -496,11 +496,7 @@ impl DualV {
                 + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -519,7 +515,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -562,7 +558,7 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t3 = t2 / pivot_3;
@@ -587,7 +583,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 19 guards, 1 negation, 193 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
     /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
@@ -610,25 +606,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.25235556276083826, "leg1")?;
+            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
             let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.25235556276083826, "leg2")?;
+            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
             let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -637,34 +633,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.25235556276083826, "leg3")?;
+            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
             let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.25235556276083826, "leg4")?;
+            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
             let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(
-                s_1_1,
-                25.429161076750646,
-                ::overact::ActuatorGroup::All,
-            )?;
+            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
@@ -686,7 +678,7 @@ impl DualV {
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
             ::overact::guard::platform(
                 pivot_2,
-                25.592368899353342,
+                25.59,
                 ::overact::ActuatorGroup::All,
             )?;
             let inv_pivot_2 = 1.0 / pivot_2;
@@ -716,23 +708,20 @@ impl DualV {
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
             ::overact::guard::platform(
                 pivot_3,
-                0.3076928490286828,
+                0.3077,
                 ::overact::ActuatorGroup::All,
             )?;
             let t4 = t3 / pivot_3;
+            ::overact::guard::size(t4, 1e60)?;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            let t7 = g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4;
-            ::overact::guard::size(t7, 1e100)?;
-            let t8 = g1_wz_leg2 * t4
-                - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5);
-            ::overact::guard::size(t8, 1e100)?;
-            let t9 = g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4;
-            ::overact::guard::size(t9, 1e100)?;
-            let t10 = minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
-                + minus_g1_wz_leg4 * t4;
-            ::overact::guard::size(t10, 1e100)?;
-            ::core::result::Result::Ok([t7, t8, t9, -t10])
+            ::core::result::Result::Ok([
+                g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
+                g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
+                g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
+                -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5
+                    + minus_g1_wz_leg4 * t4),
+            ])
         })
     }
 }

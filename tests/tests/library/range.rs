@@ -77,7 +77,7 @@ fn inputs(
     let mut inputs = Vec::new();
     for (at, kind) in kinds.iter().enumerate() {
         let mut values = sample.argument(function, kind.name())?.to_vec();
-        if number % 3 == 0 {
+        if number.is_multiple_of(3) {
             values.fill_with(|| dice.number());
         } else if at == changed {
             let scale = dice.number();
@@ -106,7 +106,7 @@ fn forward_kinematics(
         let mut actuators = vec![0.0; info.sizes.actuators];
         actuators.fill_with(|| dice.number());
         let mut start = info.home_pose.to_vec();
-        if number % 2 == 0 {
+        if number.is_multiple_of(2) {
             start.fill_with(|| dice.number());
         }
         let [one, other] = backends.map(|backend| {
