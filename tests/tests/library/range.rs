@@ -102,7 +102,7 @@ fn forward_kinematics(
     dice: &mut Dice,
 ) -> Result<(), Failure> {
     let info = backends[0].info();
-    for number in 0..by_tier([10, 100]) {
+    for number in 0..by_tier([10_usize, 100]) {
         let mut actuators = vec![0.0; info.sizes.actuators];
         actuators.fill_with(|| dice.number());
         let mut start = info.home_pose.to_vec();
