@@ -1,6 +1,5 @@
 //! The stages of the generator, in order.
 
-use crate::Effort;
 use crate::choice::{Chosen, Missing};
 use crate::derivation::{FunctionForm, Selection, Underivable, function_name, inventory};
 use crate::float::Float;
@@ -9,8 +8,8 @@ use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Forms, Search};
-use overact_description::Description;
 use overact_description::diagnostic::{Diagnostics, Source};
+use overact_description::{Description, Effort};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.

@@ -1,12 +1,12 @@
 //! What a user asks of the generator: which functions, and how much work fewer operations are worth.
 
-use crate::Effort;
 use crate::choice::Choice;
 use crate::derivation::MotionInput;
 use crate::float::Float;
 use crate::mechanism::Mechanism;
 use crate::runtime::Runtime;
 use overact_core::Function;
+use overact_description::Effort;
 use std::collections::BTreeMap;
 
 /// How far the work on a model is.

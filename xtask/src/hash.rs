@@ -22,7 +22,7 @@ pub(crate) fn hash(text: &str) -> u64 {
     further(0xcbf2_9ce4_8422_2325, text.as_bytes())
 }
 
-/// The hash of the sources, names of files and what they hold.
+/// The hash of the sources: names of files, and their text without lines that are comments.
 pub(crate) fn generator() -> Result<u64, Failure> {
     let mut all = hash("");
     for source in SOURCES {
@@ -35,13 +35,24 @@ fn add(path: &Path, all: &mut u64) -> Result<(), Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     *all = further(*all, name.as_bytes());
     if !path.is_dir() {
-        *all = further(*all, &fs::read(path)?);
+        *all = further(
+            *all,
+            without_comments(&fs::read_to_string(path)?).as_bytes(),
+        );
         return Ok(());
     }
     let entries = fs::read_dir(path)?.map(|entry| Ok(entry?.path()));
     let mut paths = entries.collect::<Result<Vec<_>, std::io::Error>>()?;
     paths.sort();
     paths.iter().try_for_each(|path| add(path, all))
+}
+
+/// The text without lines that hold a comment of Rust only, which do not change what is generated.
+fn without_comments(text: &str) -> String {
+    let lines = text.split_inclusive('\n');
+    lines
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect()
 }
 
 fn further(hash: u64, bytes: &[u8]) -> u64 {
@@ -51,7 +62,7 @@ fn further(hash: u64, bytes: &[u8]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{generator, hash};
+    use super::{generator, hash, without_comments};
 
     #[test]
     fn hashes_are_those_of_fnv_1a() {
@@ -59,6 +70,13 @@ mod tests {
         assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
         assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
         assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    #[test]
+    fn comments_do_not_count() {
+        let text = "//! A module.\n\n/// An item.\nfn f() {\n    // Nothing.\n    g(); // It.\n}\n";
+        let rest = "\nfn f() {\n    g(); // It.\n}\n";
+        assert_eq!(without_comments(text), rest);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How far the search of a function goes: all its limits stand here.
 
-use crate::Effort;
+use overact_description::Effort;
 
 /// How far the search of one function goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

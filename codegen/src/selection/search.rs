@@ -1,7 +1,6 @@
 //! How far the operations of a robot's functions are searched, and the states at which the search compares
 //! the digits of their forms.
 
-use crate::Effort;
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{Derived, Guard, GuardKind, rounded_magnitude};
 use crate::lowering::{
@@ -11,6 +10,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::states::{Spread, State, spread_states};
 use crate::parallel;
 use overact_core::Function;
+use overact_description::Effort;
 use overact_description::diagnostic::InternalError;
 
 /// States of each kind by which the search compares the digits of forms.

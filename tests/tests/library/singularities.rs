@@ -265,9 +265,9 @@ fn check_leg(
         for near in [NEAR, -NEAR] {
             let sample = robot.with_joint(joint, singular + near);
             for condition in robot.assert_refused(function, &sample, leg, 1e9)? {
-                // The joint's position is rounded to 2e-16.
+                // Generated code states four digits of the magnitude at home.
                 let relative = (condition / expected - 1.0).abs();
-                assert!(relative < 1e-5, "{condition:e} against {expected:e}");
+                assert!(relative < 1e-3, "{condition:e} against {expected:e}");
             }
         }
         robot.assert_regular(function, &robot.with_joint(joint, singular + 1e-4))?;
