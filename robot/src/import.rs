@@ -1,7 +1,7 @@
 //! Robots of other programs as descriptions that are valid.
 
 use crate::{
-    check_text,
+    check::check_text,
     error::{Error, Problem},
 };
 use overact_codegen::{Source, diagnostic::Code};
