@@ -9,13 +9,15 @@
 //! Every leg follows the described motion, so the allowed motions contain it. The two are equal if
 //! their dimensions are. Let the legs allow L motions, more than the r described ones.
 //!
-//! - If the actuators drive all L motions, the robot has L degrees of freedom, even if its controller uses
-//! only r of them. Of its n torques, n - L are internal, not n - r. Least-norm torques and preloads of the
-//! described robot would then move the platform in the other L - r directions. Gravity and inertia in these
-//! directions need torques that the model lacks. This holds for n > L too, because the same actuators move and
-//! hold the platform. Such a description is an error.
-//! - Otherwise the legs are rods that replace parallelograms, or the platform is loose. The description
-//! cannot distinguish the two. It is accepted, since the former is the usual description of a Delta.
+//! - If the actuators drive all L motions, the robot has L degrees of freedom, even if its
+//!   controller uses only r of them. Of its n torques, n - L are internal, not n - r. Least-norm
+//!   torques and preloads of the described robot would then move the platform in the other L - r
+//!   directions. Gravity and inertia in these directions need torques that the model lacks. This
+//!   holds for n > L too, because the same actuators move and hold the platform. Such a description
+//!   is an error.
+//! - Otherwise the legs are rods that replace parallelograms, or the platform is loose. The
+//!   description cannot distinguish the two. It is accepted, since the former is the usual
+//!   description of a Delta.
 
 use super::numeric::{platform_frame, target};
 use super::singular_values::{SingularValues, rank};
