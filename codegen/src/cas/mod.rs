@@ -1,8 +1,8 @@
 //! A small computer algebra system that shares expressions by meaning.
 //!
-//! An [`Arena`] owns a graph of nodes; an [`Expr`] is a `Copy` handle that carries its arena, so `x
-//! * x + c` is Rust. Every node exists once. Nodes are shared by *meaning*, not by shape: as it is
-//! built, each node is evaluated at two random points of a prime field ([`field`]). There, the
+//! An [`Arena`] owns a graph of nodes; an [`Expr`] is a `Copy` handle that carries its arena, so
+//! `x * x + c` is Rust. Every node exists once. Nodes are shared by *meaning*, not by shape: as it
+//! is built, each node is evaluated at two random points of a prime field ([`field`]). There, the
 //! constants, sines and cosines of robots are exact. A node of value zero is zero, whatever the
 //! identity (c² + s² - 1 never enters the graph). A node whose value is known is replaced by the
 //! existing node. A node whose ratio to another is the same rational at both points becomes a

@@ -1,9 +1,9 @@
-//! What was chosen for a robot before its functions are derived: columns, actuators, forms.
+//! Choices for a robot before its functions are derived: columns, actuators, forms.
 
 use super::parameter::BodyParameter;
 use crate::cas::Number;
 
-/// The choices for a robot that the derivation of a function needs in addition to the mechanism.
+/// The choices that the derivation of a function needs in addition to the mechanism.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     /// The standard parameters whose columns are not identically zero.
@@ -12,24 +12,30 @@ pub struct Selection {
     pub base: Vec<BodyParameter>,
     /// The payload's parameters whose columns are not identically zero.
     pub payload: Vec<BodyParameter>,
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection.
     pub kept_actuators: Vec<usize>,
-    /// How the robot is written.
+    /// The form of the robot's equations.
     pub formulation: Formulation,
-    /// Dependent columns that are had more cheaply from others than from their definition.
+    /// Dependent columns that are cheaper as combinations of others than from their definition.
     pub combined: Vec<Combination>,
-    /// How the joints follow from the pose. By Newton's method, programs from a pose or from
-    /// actuators have the joints as an input, which [`Function::ClosureError`](overact_core::Function::ClosureError) and
-    /// [`Function::LegsJacobian`](overact_core::Function::LegsJacobian) serve to find.
+    /// How the joints follow from the pose.
+    ///
+    /// With Newton's method, programs of a pose or of actuators have the joints as an input. They
+    /// are found with [`Function::ClosureError`](overact_core::Function::ClosureError) and
+    /// [`Function::LegsJacobian`](overact_core::Function::LegsJacobian).
     pub joints: JointsBy,
-    /// How the forces of several bodies are added up.
+    /// Form in which the forces of several bodies are summed.
     pub dynamics: DynamicsBy,
-    /// Values of the standard parameters and the payload's, where they are known: functions of given
-    /// parameters have them as constants then, those that are missing as zero, and no such input.
+    /// Known values of the standard and payload parameters.
+    ///
+    /// Functions of given parameters then contain them as constants, missing ones as zero, and have
+    /// no such input.
     pub values: Option<Vec<(BodyParameter, f64)>>,
 }
 
-/// One of several equivalent forms of a robot's equations. Which needs the fewest operations depends on the robot.
+/// One of several equivalent forms of a robot's equations.
+///
+/// Which form needs the fewest operations depends on the robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Formulation {
     /// For each leg, the axes in which its closure is written: the number of a frame on the path from the base along
@@ -83,11 +89,12 @@ pub enum JointsBy {
     Newton,
 }
 
-/// In which of two equal forms the forces of given parameters are written; which needs fewer operations
-/// depends on the robot.
+/// Form in which the forces of given parameters are summed.
+///
+/// Both are equivalent; which needs fewer operations depends on the robot.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum DynamicsBy {
-    /// Parameter by parameter, as the identification model is.
+    /// Parameter by parameter, as in the identification model.
     #[default]
     Parameters,
     /// Body by body, summed from the tips to the base.

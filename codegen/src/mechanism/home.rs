@@ -94,7 +94,7 @@ const PROGRESS: f64 = 0.99;
 impl Home {
     /// Closes all legs by Newton's iteration, starting from the rough joint positions.
     ///
-    /// Every leg that does not close, or is singular where it closes.
+    /// # Errors
     /// Every leg that does not close, or is singular where it closes.
     pub(crate) fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
         if mechanism.is_tree() {

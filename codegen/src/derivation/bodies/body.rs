@@ -1,10 +1,10 @@
 //! Bodies in their own frames: velocities, accelerations, partial velocities, and the wrench of
 //! each standard parameter.
 //!
-//! The recursion is Khalil's: with `U = [ω̇]× + [ω]×[ω]×`, the acceleration of the next origin is a
-//! + U l. Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and ∂Ω/∂u_i
-//! follow the same path. By virtual power (Kane), the generalised force of parameter p on u_i is
-//! their scalar product with the wrench of p alone.
+//! The recursion is Khalil's: with `U = [ω̇]× + [ω]×[ω]×`, the acceleration of the next origin is
+//! a + U l. Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and
+//! ∂Ω/∂u_i follow the same path. By virtual power (Kane), the generalised force of parameter p on
+//! u_i is their scalar product with the wrench of p alone.
 
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::derivation::closure::leg::LegState;
