@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub struct CompiledFunction {
     /// Name of the Rust function.
     pub name: String,
-    /// What it computes.
+    /// The function that it computes.
     pub computes: Function,
     /// The motion from which it is evaluated. For actuators, the program's pose is that of forward
     /// kinematics.

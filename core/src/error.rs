@@ -247,7 +247,7 @@ impl fmt::Display for Actuators {
 pub struct SampleError {
     /// Index of the sample, counted from 0.
     pub sample: usize,
-    /// What went wrong there.
+    /// The error.
     pub error: Error,
 }
 

@@ -187,7 +187,7 @@ impl StandardParameter {
         )
     }
 
-    /// SI unit; `slides` says whether the joint is prismatic.
+    /// SI unit; `slides` is true for a prismatic joint.
     #[must_use]
     pub const fn unit(self, slides: bool) -> &'static str {
         match self {

@@ -49,7 +49,7 @@ pub mod single {
     /// Largest angle (rad) for this reduction; larger ones use the library's functions.
     pub const LARGEST: f32 = 8192.0;
 
-    /// Adding and subtracting 1.5 × 2²³ rounds to an integer, which then stands in the lowest bits.
+    /// Adding and subtracting 1.5 × 2²³ rounds to an integer, which is then in the lowest bits.
     pub const ROUND: f32 = 12_582_912.0;
 
     /// π/2 in four parts: three of 11 bits, whose products with a multiple below 2¹³ are exact, and the rest.

@@ -118,7 +118,7 @@ impl Angle {
     }
 }
 
-/// The constant; if its image is zero it is exactly zero, whatever the rounding of the float.
+/// The constant, which is exactly zero if its image is zero, regardless of rounding.
 #[inline]
 fn exact(value: f64, image: Element) -> Number {
     if image == Element::ZERO {

@@ -94,7 +94,8 @@ impl Arena {
 
     /// Fingerprint of a symbol as a number; a sign has that of an arbitrary number here.
     ///
-    /// Single points cannot represent a sign: a value whose square is one is 1 or -1 there.
+    /// At a single point of the field, only 1 and -1 have a square of one, so no value there
+    /// represents a sign.
     pub(crate) fn symbol_fingerprint(&self, id: SymbolId) -> Fingerprint {
         let own = &self.tables.borrow().symbols[id.0 as usize];
         own.as_any.unwrap_or(own.fingerprint)

@@ -328,10 +328,10 @@ impl<'a> LegClosure<'a> {
 
     /// Derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
     ///
-    /// If the products of the wrenches with the links are known (in a plane they are link lengths
-    /// and cosines of joint angles), the bias is computed term by term and divided by the
-    /// determinant last. Otherwise the bias is summed as a vector first. `names` are those of the
-    /// end's acceleration along each wrench, minus the bias terms of constant product.
+    /// If the products of the wrenches with the links are known, the bias is computed term by term,
+    /// and divided by the determinant last. In a plane they are link lengths and cosines of joint
+    /// angles. Otherwise the bias is summed as a vector first. `names` are those of the end's
+    /// acceleration along each wrench, minus the bias terms of constant product.
     #[must_use]
     pub fn accelerations(
         &self,
