@@ -1,8 +1,8 @@
-//! Tells the attribute by which generator its expansions were made, and gives it a folder to keep them in.
+//! Identifies the generator for the cache of expansions, and gives the cache a folder.
 //!
-//! A released generator is known by its version. In the repository sources change from build to build, so that
-//! their contents are what it is known by. That there is a build script at all gives the crate a folder of its
-//! own in the target folder, `OUT_DIR`.
+//! A released generator is identified by its version. In the repository sources change between
+//! builds, so their contents identify it. The existence of a build script gives the crate a folder
+//! of its own, `OUT_DIR`.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -12,7 +12,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     let mut contents = DefaultHasher::new();
     for crate_of_the_generator in ["codegen", "core", "macros"] {
-        // In a package of the registry there are none beside it.
+        // Packages from the registry have no neighbouring sources.
         let folder = Path::new("..").join(crate_of_the_generator).join("src");
         if folder.is_dir() {
             println!("cargo::rerun-if-changed={}", folder.display());
@@ -25,7 +25,7 @@ fn main() {
     );
 }
 
-/// Adds the names and texts of all files of a folder, in the order of their names.
+/// Hashes the names and contents of all files of a folder, in the order of their names.
 fn add(folder: &Path, contents: &mut DefaultHasher) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();

@@ -1,9 +1,9 @@
-//! Says whether sines and cosines are computed in vector registers (`cfg(vectors)`), and whether functions find out at run
-//! time how wide these are (`cfg(dispatch)`).
+//! Sets `cfg(vectors)`, for sines and cosines in vector registers, and `cfg(dispatch)`, for
+//! detection of the vector width at run time.
 //!
-//! No attribute of the language knows the level of optimisation, and what is best differs by a factor of fifty.
-//! This crate's functions of many angles are compiled with the crate that calls them, so a build counts as
-//! optimised for speed only if its profile is, and not this package alone.
+//! No attribute of the language gives the optimisation level, and the best choice differs by a
+//! factor of fifty. This crate's functions of many angles are compiled with the crate that calls
+//! them. So a build counts as optimised for speed only if its profile is, not only this package.
 
 use std::env::var;
 

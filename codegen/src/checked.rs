@@ -1,5 +1,7 @@
-//! A description checked without its model: all that [`compile`](crate::compile()) would refuse, and none of
-//! the work of deriving, choosing and lowering functions, which takes long for chains of many joints.
+//! Check of a description without its model.
+//!
+//! It reports all errors of [`compile`](crate::compile()), but does not derive, choose and lower
+//! functions, which takes long for chains of many joints.
 
 use crate::derivation::derivable;
 use crate::mechanism::{self, Mechanism};
@@ -9,16 +11,16 @@ use overact_description::diagnostic::{Diagnostics, Source};
 /// A description without errors.
 #[derive(Debug)]
 pub struct Checked {
-    /// What the text says.
+    /// The parsed text.
     pub description: Description,
     /// The mechanism with its home configuration.
     pub mechanism: Mechanism,
 }
 
-/// From a description's text to a mechanism that has a model.
+/// Checks a description's text; returns a mechanism that has a model.
 ///
 /// # Errors
-/// All errors of the description, each at its place; the same as those of
+/// All errors of the description, each at its location; the same as those of
 /// [`compile`](crate::compile()).
 pub fn check(source: &Source) -> Result<Checked, Diagnostics> {
     let description = overact_description::parse(source)?;

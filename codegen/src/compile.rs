@@ -12,28 +12,28 @@ use overact_description::diagnostic::{Diagnostics, Source};
 use overact_description::{Description, Effort};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A description and the model that was made from it.
+/// A description and the model made from it.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Compiled {
-    /// What the text says.
+    /// The parsed text.
     pub description: Description,
     /// The robot's model.
     pub model: RobotModel,
 }
 
-/// From a description's text to a robot's model with all its functions.
+/// Compiles a description's text to a robot's model with all its functions.
 ///
 /// # Errors
-/// All errors of the description, each at its place.
+/// All errors of the description, each at its location.
 pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
     compile_with(source, &Request::default())
 }
 
-/// From a description's text to what is asked for of a robot's model.
+/// Compiles a description's text to the requested parts of a robot's model.
 ///
 /// # Errors
-/// All errors of the description, each at its place.
+/// All errors of the description, each at its location.
 pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, Diagnostics> {
     let description = overact_description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
@@ -43,7 +43,7 @@ pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, 
     Ok(Compiled { description, model })
 }
 
-/// The model of a mechanism that is checked already.
+/// The model of a checked mechanism.
 ///
 /// # Errors
 /// See [`Underivable`].
@@ -51,13 +51,13 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     derived(mechanism, request.effort_for(None), request)
 }
 
-/// What was chosen and is not there.
+/// The error for requested functions that are not available.
 fn not_offered(missing: Vec<Missing>) -> Underivable {
     let told = missing.into_iter().map(|one| (one.sentence, one.help));
     Underivable::NotOffered(told.collect())
 }
 
-/// Whether the numbers of all functions are among those that are computed with.
+/// Checks that the floating-point type can represent the constants of all functions.
 fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), Underivable> {
     for function in functions {
         let mut constants = function.program.constants();
@@ -72,7 +72,7 @@ fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), Und
     Ok(())
 }
 
-/// The functions that the robot has and the request asks for, and what was chosen.
+/// The requested functions that the robot has, and the choice.
 fn chosen(
     mechanism: &Mechanism,
     selection: &Selection,

@@ -1,20 +1,19 @@
-//! The numbers that generated code computes with.
+//! The floating-point type of generated code.
 
 use overact_core::{Limits, limits};
 
-/// A type of numbers. Descriptions and the search of a program have 64 bits in any case.
+/// A floating-point type. Descriptions and the search always use 64 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Float {
-    /// Of 64 bits, as identification and simulation want them.
+    /// 64 bits, for identification and simulation.
     #[default]
     F64,
-    /// Of 32 bits, for controllers whose processors compute with no longer ones. Such code is no
-    /// `overact::Model`.
+    /// 32 bits, for controllers in single precision. Such code does not implement `overact::Model`.
     F32,
 }
 
 impl Float {
-    /// All.
+    /// All types.
     pub const ALL: [Self; 2] = [Self::F64, Self::F32];
 
     /// The name in Rust, in attributes and on the command line.
@@ -26,13 +25,13 @@ impl Float {
         }
     }
 
-    /// The numbers with this name.
+    /// The type of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|float| float.name() == name)
     }
 
-    /// From where on numbers count as zero.
+    /// Numerical limits of the type.
     #[must_use]
     pub const fn limits(self) -> Limits {
         match self {
@@ -41,7 +40,7 @@ impl Float {
         }
     }
 
-    /// Whether a number stays one, and stays other than zero.
+    /// Whether the type represents a number as finite and, unless it is zero, as nonzero.
     #[must_use]
     pub(crate) fn holds(self, value: f64) -> bool {
         let short = value as f32;

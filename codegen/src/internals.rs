@@ -1,4 +1,4 @@
-//! What the tests of this repository look at between the stages. No part of the interface: it changes
+//! Intermediate results for the tests of this repository. Not part of the interface: it changes
 //! with any version.
 
 pub use crate::cas::{Arena, Stream};

@@ -1,11 +1,11 @@
-//! From a robot's description to its symbolic identification model and to specialised Rust.
+//! Derives a robot's symbolic identification model from its description, and generates code.
 //!
-//! A parallel robot is opened at its platform into legs, which are trees, and a free body. The legs'
-//! bodies move with quasi-velocities u, absolute rates along parallel axes; the closure of each leg
-//! gives u = (∂u/∂v) v for the platform's twist coordinates v. By virtual power, the column of standard
-//! parameter p in the identification model of case 1 is Σ (∂u_i/∂v)ᵀ s_i, with s_i the generalised force on
-//! u_i of the wrench that p alone produces: Γ¹ = (J_p^inv)ᵀ τ = IDM_red χ, eq. (30) of Briot, Krut, Gautier
-//! 2015. Everything is linear in the parameters and divides by nothing but the leg determinants.
+//! A parallel robot is cut at its platform into legs, which are trees, and a free body. The legs'
+//! bodies move with quasi-velocities u, absolute rates along parallel axes. The closure of each leg
+//! gives u = (∂u/∂v) v for the platform's twist coordinates v. By virtual power, the column of
+//! standard parameter p in the platform projection is Σ (∂u_i/∂v)ᵀ s_i, with s_i the generalised
+//! force on u_i of the wrench of p alone: Γ¹ = (J_p^inv)ᵀ τ = IDM_red χ, eq. (30) of Briot, Krut,
+//! Gautier 2015. All is linear in the parameters, and the only divisors are the leg determinants.
 //!
 //! The stages, in the order of [`compile`](fn@compile), each a folder or file with its theory:
 //!
@@ -19,7 +19,7 @@
 //! | [`emission`], [`c`] | programs | Rust, C |
 //! | [`evaluation`] | programs | numbers, block by block |
 //!
-//! The crate is pure: text in, model or diagnostics out.
+//! The crate is pure: it maps text to a model or diagnostics.
 
 pub mod c;
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
@@ -55,5 +55,5 @@ pub use runtime::{NotAPath, Runtime};
 pub use selection::BaseParameter;
 pub use total_cost::{Iteration, SideBySide, TotalCost};
 
-/// Versions of the crates that decide what is generated.
+/// Versions of the crates that determine the generated code.
 pub const VERSIONS: [&str; 2] = [env!("CARGO_PKG_VERSION"), overact_core::VERSION];

@@ -15,14 +15,14 @@ use std::collections::BTreeMap;
 pub struct CompiledFunction {
     /// Name of the Rust function.
     pub name: String,
-    /// What it computes.
+    /// The function that it computes.
     pub computes: Function,
-    /// What it is evaluated from. From actuators, the program's pose is the one that forward
-    /// kinematics finds.
+    /// The motion from which it is evaluated. For actuators, the program's pose is that of forward
+    /// kinematics.
     pub from: MotionInput,
     /// The program.
     pub program: Program,
-    /// The same with legs that are alike side by side, where the program is long and that is asked for.
+    /// The program with equal legs in SIMD lanes, if the program is long and this is requested.
     pub lanes: Option<Lanes>,
 }
 
@@ -52,14 +52,14 @@ impl CompiledFunction {
         let position = mechanism.pose_len().saturating_sub(4);
         let names: Vec<String> = self.program.inputs.iter().map(|i| i.name.clone()).collect();
         let bounds = |array: usize, index: usize| match names.get(array).map(String::as_str) {
-            // Of length 1 but for rounding.
+            // Of length 1 up to rounding.
             Some("pose") if has_quaternion && index >= position => 0.5,
-            // What an iteration finds is a step further than its last pose or joints.
+            // Iterated values are one step farther than the last pose or joints.
             Some(name @ ("pose" | "joints")) => magnitudes.of_input(name) + 1.0,
             Some(name) => magnitudes.of_input(name),
             None => f64::INFINITY,
         };
-        // What starts from this pose takes it as it is.
+        // Functions that start from this pose use it unchanged.
         let most = match self.computes {
             Function::PoseInClosedForm => float.limits().largest.pose,
             _ => f64::INFINITY,
@@ -77,25 +77,27 @@ impl CompiledFunction {
 pub struct RobotModel {
     /// The robot.
     pub mechanism: Mechanism,
-    /// Standard, base and payload columns, kept actuators, and how the joints follow from the pose.
+    /// Standard, base and payload columns, kept actuators, and the inverse kinematics.
     pub selection: Selection,
-    /// Base parameters with their regroupings, in the order of the columns: the symmetric one (43), or the one whose
-    /// columns take the fewest operations.
+    /// Base parameters with their regroupings, in column order.
+    ///
+    /// The columns are chosen in the symmetric order (43), or such that they take the fewest
+    /// operations.
     pub base: Vec<BaseParameter>,
     /// All functions.
     pub functions: Vec<CompiledFunction>,
     /// Whether generated code has forward kinematics, `pose_from_actuators`.
     pub forward_kinematics: bool,
-    /// Whether no function was left out that `overact::Model` is asked for.
+    /// Whether all functions of `overact::Model` are included.
     pub is_model: bool,
-    /// The numbers that generated code computes with.
+    /// The floating-point type of generated code.
     pub float: Float,
-    /// Under which path generated Rust finds the runtime crate.
+    /// Path of the runtime crate in generated Rust.
     pub runtime: Runtime,
 }
 
 impl RobotModel {
-    /// The program of a function, evaluated from what is asked for.
+    /// The function that is evaluated from a given motion.
     #[must_use]
     pub fn function(&self, function: Function, from: MotionInput) -> Option<&CompiledFunction> {
         self.functions
@@ -103,7 +105,7 @@ impl RobotModel {
             .find(|f| f.computes == function && f.from == from)
     }
 
-    /// The function that plain states (pose or, for a tree, joints) are given to.
+    /// The function of plain states (the pose or, for a tree, the joints).
     #[must_use]
     pub fn plain(&self, function: Function) -> Option<&CompiledFunction> {
         let from = if self.is_tree() {
@@ -114,8 +116,8 @@ impl RobotModel {
         self.function(function, from)
     }
 
-    /// The form of a function that [`overact::Model`](https://docs.rs/overact) evaluates, whose inputs are
-    /// those of [`Function::inputs`].
+    /// The form of a function that [`overact::Model`](https://docs.rs/overact) evaluates, with the
+    /// inputs [`Function::inputs`].
     #[must_use]
     pub fn served(&self, function: Function) -> Option<&CompiledFunction> {
         let from = |from| self.function(function, from);
@@ -130,33 +132,33 @@ impl RobotModel {
         self.mechanism.is_tree()
     }
 
-    /// Whether the function's joints are found by Newton's method before its program runs.
+    /// Whether Newton's method computes the function's joints before its program runs.
     #[must_use]
     pub fn finds_joints(&self, function: &CompiledFunction) -> bool {
         self.selection.joints == JointsBy::Newton && function.from != MotionInput::Joints
     }
 
-    /// Whether forward kinematics finds the function's pose before its program runs.
+    /// Whether forward kinematics computes the function's pose before its program runs.
     #[must_use]
     pub fn finds_pose(&self, function: &CompiledFunction) -> bool {
         function.from == MotionInput::Actuators && function.computes != Function::PoseInClosedForm
     }
 
-    /// Whether the function's program, or the search of its joints, uses the pose.
+    /// Whether the function's program, or Newton's method for its joints, uses the pose.
     #[must_use]
     pub(crate) fn needs_pose(&self, function: &CompiledFunction) -> bool {
         uses(function, "pose") || self.needs_joints(function)
     }
 
-    /// Whether the function's program uses joints that Newton's method has to find first.
+    /// Whether the function's program uses joints that Newton's method computes.
     #[must_use]
     pub(crate) fn needs_joints(&self, function: &CompiledFunction) -> bool {
-        // The joints themselves are what Newton's method gives.
+        // The joints themselves are the result of Newton's method.
         let needs = uses(function, "joints") || function.computes == Function::Joints;
         self.finds_joints(function) && needs
     }
 
-    /// The parameters that the columns of a function stand for.
+    /// The parameters of a function's columns.
     #[must_use]
     pub fn columns_of(&self, function: Function) -> &[BodyParameter] {
         match function {
@@ -175,15 +177,17 @@ impl RobotModel {
         parameter.name(&self.mechanism)
     }
 
-    /// Name of a base parameter: with the suffix `R` where others are regrouped into it.
+    /// Name of a base parameter: with the suffix `R` if others are regrouped into it.
     #[must_use]
     pub fn base_name(&self, base: &BaseParameter) -> String {
         let suffix = if base.regrouped.is_empty() { "" } else { "R" };
         format!("{}{suffix}", self.parameter_name(base.parameter))
     }
 
-    /// Values of the base parameters, with what is regrouped into them, followed by the payload's, of given
-    /// standard parameters by name; what is not given is zero.
+    /// Values of the base parameters with their regroupings, then of the payload, from standard
+    /// parameters by name.
+    ///
+    /// Missing values are zero.
     #[must_use]
     pub fn regrouped(&self, given: &BTreeMap<String, f64>) -> Vec<(BodyParameter, f64)> {
         selection::regrouped(&self.mechanism, &self.selection, &self.base, given)

@@ -1,4 +1,4 @@
-//! Independent work on all cores, with results in the order of the items.
+//! Independent work on all cores, with results in input order.
 
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Applies `f` to every item. The results do not depend on the number of threads.
 pub(crate) fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    // Where there is one core alone there may be no threads at all, as in a browser.
+    // With a single core, threads may not exist at all, as in a browser.
     if threads == 1 || items.len() <= 1 {
         return items.iter().map(f).collect();
     }
@@ -28,7 +28,7 @@ pub(crate) fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> 
             });
         }
     });
-    // A thread that panics has ended the scope with its panic, so the lock is sound.
+    // A panicking thread ends the scope with its panic, so the lock is not poisoned.
     let mut done = done.into_inner().unwrap_or_default();
     done.sort_by_key(|(at, _)| *at);
     done.into_iter().map(|(_, result)| result).collect()

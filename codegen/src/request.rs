@@ -1,4 +1,4 @@
-//! What a user asks of the generator: which functions, and how much work fewer operations are worth.
+//! Request to the generator: functions, and the effort of the search for fewer operations.
 
 use crate::choice::Choice;
 use crate::derivation::MotionInput;
@@ -9,50 +9,52 @@ use overact_core::Function;
 use overact_description::Effort;
 use std::collections::BTreeMap;
 
-/// How far the work on a model is.
+/// Progress of the work on a model.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Progress<'p> {
     /// The robot.
     pub mechanism: &'p Mechanism,
-    /// Functions that are done.
+    /// Number of finished functions.
     pub done: usize,
-    /// Functions in all; none as long as form and columns are chosen.
+    /// Total number of functions; zero while form and columns are chosen.
     pub functions: usize,
-    /// What is begun.
+    /// The work that begins.
     pub work: &'p str,
 }
 
-/// Who is told how far the work is; functions are told from several threads.
+/// Callback for progress; functions report from several threads.
 pub(crate) type Watcher<'a> = &'a (dyn Fn(Progress<'_>) + Sync);
 
-/// Which functions of a robot a model shall have.
+/// Predicate for the functions of a model.
 pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
 
-/// What a model shall have, and what work it is worth; by default all functions, quickly.
+/// Contents of a model and effort; by default all functions, with a quick search.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
-    /// How hard fewer operations are searched, whatever the description says.
+    /// Effort of the search, overriding the description.
     pub effort: Option<Effort>,
-    /// How hard they are searched where the description says nothing.
+    /// Effort of the search if the description has none.
     pub otherwise: Effort,
-    /// Which functions are derived: most of the time goes into one after the other.
+    /// The functions that are derived, which takes most of the time.
     pub wanted: Wanted<'a>,
-    /// Functions that are chosen by name, where not all are wanted; what they call comes along. Generated code is
-    /// an `overact::Model` where all functions are among them that such a model is asked for.
+    /// Functions chosen by name, if not all are requested; called functions are included.
+    ///
+    /// Generated code is an `overact::Model` if all functions of such a model are included.
     pub functions: Option<&'a Choice>,
-    /// Values of standard parameters by name (SI units), where they are known: the dynamics have them as
-    /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
-    /// the code is no `overact::Model`.
+    /// Known values of standard parameters by name (SI units).
+    ///
+    /// The dynamics contain them as constants, missing ones as zero. Identification models are left
+    /// out, and the code is no `overact::Model`.
     pub parameters: Option<&'a BTreeMap<String, f64>>,
-    /// The numbers that generated code computes with.
+    /// The floating-point type of generated code.
     pub float: Float,
-    /// Whether Rust is generated, in which legs that are alike may run side by side. Nothing else needs their
+    /// Whether Rust is generated, in which equal legs may run in SIMD lanes. Only Rust uses these
     /// programs.
     pub side_by_side: bool,
-    /// Under which path generated Rust finds the runtime crate, where it is not `::overact`.
+    /// Path of the runtime crate in generated Rust, if it is not `::overact`.
     pub runtime: Option<&'a Runtime>,
-    /// Is told how far the work is: large robots take minutes.
+    /// Callback for progress: large robots take minutes.
     pub progress: Watcher<'a>,
 }
 
@@ -73,7 +75,7 @@ impl Default for Request<'_> {
 }
 
 impl Request<'_> {
-    /// All functions, with an effort that overrules the description's.
+    /// A request for all functions with a given effort, which overrides that of the description.
     #[must_use]
     pub fn with_effort(effort: Effort) -> Self {
         Self {
@@ -82,7 +84,7 @@ impl Request<'_> {
         }
     }
 
-    /// The effort for a robot whose description asks for one, or for none.
+    /// The effort for a robot with or without an effort in its description.
     #[must_use]
     pub(crate) fn effort_for(&self, described: Option<Effort>) -> Effort {
         self.effort.or(described).unwrap_or(self.otherwise)

@@ -1,9 +1,11 @@
-//! Under which path generated Rust finds the crate that it calls.
+//! Path of the runtime crate in generated Rust.
 
 use std::fmt;
 
-/// The path of the crate `overact` in generated Rust: by default `::overact`, another one where it comes
-/// renamed or by way of another crate.
+/// The path of the crate `overact` in generated Rust.
+///
+/// It is `::overact` by default; it differs if the crate is renamed or re-exported by another
+/// crate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Runtime {
     path: String,
@@ -18,10 +20,10 @@ impl Default for Runtime {
 }
 
 impl Runtime {
-    /// The crate under a path, `::my_robotics::overact` or `crate::vendor::overact`.
+    /// The crate at a path, such as `::my_robotics::overact` or `crate::vendor::overact`.
     ///
     /// # Errors
-    /// What is no path, or one that means something else in the scope of a function, as `self` does.
+    /// A text that is not a path, or a path that depends on the scope, such as `self`.
     pub fn new(path: &str) -> Result<Self, NotAPath> {
         let refused = || NotAPath(path.to_owned());
         let parser = syn::Path::parse_mod_style;
@@ -47,7 +49,7 @@ impl Runtime {
     }
 }
 
-/// A text that is no path of a crate.
+/// A text that is not a crate's path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NotAPath(String);
 

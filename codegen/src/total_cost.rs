@@ -1,9 +1,9 @@
-//! What a function costs from its inputs to its output: its own program, and what it calls.
+//! Operation count of a function with all that it calls.
 //!
-//! A function from actuators calls forward kinematics, a function from a pose whose joints no rule gives
-//! calls Newton's method. Both iterate, so there are two numbers: what is done once, and what each step of
-//! an iteration takes. What the runtime does on the way is counted here from its loops, for the usual case:
-//! no step is shortened, no quaternion is far from length 1, no pivot is exchanged.
+//! A function of the actuators calls forward kinematics; a function of a pose without closed-form
+//! joints calls Newton's method. Both iterate, so the count has two parts: operations done once,
+//! and operations of each step. Loops of the runtime are counted for the usual case: no step is
+//! shortened, no quaternion is far from unit length, no pivot is exchanged.
 
 use crate::derivation::MotionInput;
 use crate::lowering::Cost;
@@ -16,46 +16,46 @@ use overact_core::Function;
 pub struct Iteration {
     /// The function that iterates.
     pub function: &'static str,
-    /// The iteration of which each step runs it; without one it is run once.
+    /// The outer iteration whose steps run it; `None` if it runs once.
     pub within: Option<&'static str>,
-    /// How often it is run there.
+    /// Number of runs in each step of the outer iteration.
     pub runs: usize,
     /// Operations of a step.
     pub operations: usize,
-    /// What a step takes.
+    /// Cost of a step.
     #[serde(flatten)]
     pub step: Cost,
 }
 
-/// What a function costs, all that it calls included.
+/// Cost of a function, including all that it calls.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
 pub struct TotalCost {
-    /// What is done once.
+    /// Cost of the part that is done once.
     #[serde(flatten)]
     pub once: Cost,
-    /// What is done in each step of an iteration.
+    /// The iterations.
     pub iterations: Vec<Iteration>,
-    /// What Rust does in the place of the function's own program, where legs run side by side.
+    /// Cost of the program in SIMD lanes that replaces the function's own program in Rust.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side_by_side: Option<SideBySide>,
 }
 
-/// Operations of legs that run side by side, in the lanes of vectors.
+/// Operations of legs in SIMD lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
 pub struct SideBySide {
     /// Operations that are done once.
     pub once: usize,
-    /// Operations of each leg.
+    /// Operations per leg.
     pub each: usize,
-    /// How many legs there are.
+    /// Number of legs.
     pub legs: usize,
-    /// How many lanes there have to be. Of fewer the function's own program runs.
+    /// Smallest number of lanes; with fewer the function's own program runs.
     pub lanes: usize,
 }
 
-/// The iterations' names: those of the functions that have them.
+/// Names of the iterations: those of the functions that contain them.
 const FORWARD: &str = "pose_from_actuators";
 const INVERSE: &str = "joints";
 
@@ -70,7 +70,7 @@ impl From<Cost> for TotalCost {
 }
 
 impl TotalCost {
-    /// Adds what is called once.
+    /// Adds a call.
     fn call(&mut self, other: Self) {
         self.once += other.once;
         for called in other.iterations {
@@ -104,8 +104,7 @@ impl TotalCost {
 }
 
 impl RobotModel {
-    /// What a function costs, all that it calls included. Functions that the model was not asked for cost
-    /// nothing.
+    /// Cost of a function with all that it calls. Functions that are not in the model cost nothing.
     #[must_use]
     pub fn cost(&self, function: &CompiledFunction) -> TotalCost {
         let newton = self.needs_joints(function) && function.computes == Function::Joints;
@@ -152,7 +151,7 @@ impl RobotModel {
         platform.is_some_and(|p| p.motion.has_quaternion())
     }
 
-    /// `guard::unit_quaternion` where the length is 1 but for rounding.
+    /// `guard::unit_quaternion` for a length that is 1 up to rounding.
     fn scaled_quaternion(&self) -> Cost {
         if self.has_quaternion() {
             Cost {
@@ -166,8 +165,8 @@ impl RobotModel {
         }
     }
 
-    /// `pose_from_actuators`: the closed form where it is taken, and Gauss and Newton's steps where actuators are
-    /// too many for it or there is none.
+    /// `pose_from_actuators`: the closed form, if used, and Gauss-Newton steps for redundant
+    /// actuators or without it.
     fn forward_kinematics(&self) -> TotalCost {
         let (n, r) = (self.mechanism.actuated().len(), self.mechanism.dof());
         let mut total = TotalCost::from(self.scaled_quaternion());
@@ -186,7 +185,8 @@ impl RobotModel {
         // The bounds of the next step.
         step.once.multiplications += 3;
         if self.mechanism.is_parasitic() {
-            // The start is looked at. A short step leaves the closures once, and is looked at when it is back.
+            // The start is checked. A short step leaves the closures once, and is checked after the
+            // correction.
             let turn = self.displacement_with_correction();
             total.call(turn.clone());
             step.call(turn.clone());
@@ -206,7 +206,8 @@ impl RobotModel {
         total
     }
 
-    /// A turn of `aside::displace`: all six components displace the start, and the dependent ones are corrected.
+    /// One iteration of `aside::displace`: all six components displace the start, and the dependent
+    /// ones are corrected.
     fn displacement_with_correction(&self) -> TotalCost {
         let mut turn = TotalCost::from(displacement(6, true));
         turn.once += elimination(6 - self.mechanism.dof());
@@ -215,7 +216,7 @@ impl RobotModel {
         turn
     }
 
-    /// `joints` by Newton's method, where the way from home is gone in one step.
+    /// `joints` by Newton's method, if one step leads from home to the pose.
     fn newton(&self) -> TotalCost {
         let legs = self.mechanism.legs.iter();
         let sizes: Vec<usize> = legs.map(|leg| leg.independent().count()).collect();
@@ -236,7 +237,7 @@ impl RobotModel {
             step += elimination(size);
             step.additions += size;
             step.multiplications += size;
-            // The mode is compared with that at home.
+            // The working mode is compared with that at home.
             for _ in 0..2 {
                 total.once += evaluation;
                 total.once += elimination(size);
@@ -248,7 +249,7 @@ impl RobotModel {
     }
 }
 
-/// A step of `forward::gauss_newton` for n actuators and r coordinates, without what it evaluates.
+/// A step of `forward::gauss_newton` for n actuators and r coordinates, without the evaluations.
 fn gauss_newton_step(n: usize, r: usize) -> Cost {
     let half = r * (r + 1) / 2;
     let mut cost = Cost {
@@ -259,7 +260,7 @@ fn gauss_newton_step(n: usize, r: usize) -> Cost {
         ..Cost::default()
     };
     for below in 0..r {
-        // Elimination of the rows below a pivot, and substitution of what is behind it.
+        // Elimination of the rows below a pivot, and substitution.
         let products = below * (below + 1) / 2 + below + below;
         cost.additions += products;
         cost.multiplications += products;
@@ -271,7 +272,8 @@ fn gauss_newton_step(n: usize, r: usize) -> Cost {
 /// `forward::displace` or `displace_quaternion`.
 fn displacement(r: usize, quaternion: bool) -> Cost {
     if quaternion {
-        // The position, the turn's square, two series, the product, and the length that is 1 but for rounding.
+        // The position, the square of the angle, two series, the product, and the length, which is
+        // 1 up to rounding.
         Cost {
             additions: (r - 3) + 2 + 6 + 12 + 5,
             multiplications: 3 + 6 + 3 + 16 + 9,
@@ -286,7 +288,7 @@ fn displacement(r: usize, quaternion: bool) -> Cost {
     }
 }
 
-/// `inverse::System::eliminate` of a leg of so many joints.
+/// `inverse::System::eliminate` for a leg with this number of joints.
 fn elimination(size: usize) -> Cost {
     let mut cost = Cost {
         divisions: 1,

@@ -2,7 +2,7 @@
 
 use crate::size::Extent;
 
-/// Which columns an identification model has.
+/// Columns of an identification model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Columns {
     /// All standard parameters whose column is not identically zero.
@@ -21,7 +21,7 @@ impl Columns {
         }
     }
 
-    /// The columns with this name.
+    /// The columns of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let all = [Self::Standard, Self::Base];

@@ -1,12 +1,12 @@
-//! What can go wrong when a model is evaluated at a state: never a panic, never a NaN.
+//! Errors of the evaluation of a model at a state, which never panics and never returns NaN.
 
 use core::fmt;
 
-/// Why a robot's model has no value at a state.
+/// Reason why a robot's model has no value at a state.
 ///
-/// Where several conditions fail at once, the first leg of the description is told, its reach before its
-/// singularity, and the actuators only where all legs are regular. Compiled and interpreted models say the
-/// same.
+/// If several conditions fail at once, the first leg of the description is reported. Its reach
+/// precedes its singularity, and the actuators are reported only if all legs are regular. Compiled
+/// and interpreted models report the same error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -15,50 +15,52 @@ pub enum Error {
         /// Name of the leg.
         leg: &'static str,
     },
-    /// A leg is at, or very near, a singular configuration: its joint rates are not determined by
-    /// the platform's motion.
+    /// A leg is in, or very close to, a singular configuration: the platform's motion does not
+    /// determine its joint rates.
     SingularLeg {
         /// Name of the leg.
         leg: &'static str,
-        /// How many times smaller the leg's determinant is than at the home configuration.
+        /// Ratio of the leg's determinant at the home configuration to that at the state.
         condition: f64,
     },
-    /// The actuators do not determine the platform's motion (parallel singularity), or the kept
-    /// actuators of case 2 do not (partition singularity).
+    /// The actuators do not determine the platform's motion (parallel singularity).
+    ///
+    /// Or the kept actuators of the actuator projection do not determine it (partition
+    /// singularity).
     SingularPlatform {
-        /// Which actuators they are.
+        /// The actuators.
         actuators: ActuatorGroup,
-        /// How many times smaller the determinant is than at the home configuration.
+        /// Ratio of the determinant at the home configuration to that at the state.
         condition: f64,
     },
-    /// The pose is none that a leg allows: of a platform that moves aside, not all coordinates can be chosen.
+    /// A leg does not allow the pose: with parasitic motion, not all coordinates are independent.
     NotClosed {
         /// Name of the leg.
         leg: &'static str,
-        /// By how much the pose misses, in a direction that no joint of the leg gives (m, rad).
+        /// Closure error in a direction in which no joint moves the leg's end (m, rad).
         gap: f64,
     },
-    /// The independent coordinates of a platform that moves aside do not determine the others here.
+    /// The independent coordinates of a platform with parasitic motion do not determine the others.
     SingularCoordinates {
-        /// How many times smaller the determinant is than at the home configuration.
+        /// Ratio of the determinant at the home configuration to that at the state.
         condition: f64,
     },
-    /// The mass matrix of the given parameters is not positive definite: there is motion without kinetic
-    /// energy, or with a negative one.
+    /// The mass matrix of the given parameters is not positive definite.
+    ///
+    /// There is motion with zero or negative kinetic energy.
     MassMatrix,
-    /// Other actuators than those of the description are kept in case 2, and they do not determine the
-    /// platform's motion.
+    /// Kept actuators other than the description's do not determine the platform's motion.
     SingularPartition {
         /// The kept actuators.
         kept: Actuators,
         /// Condition number of their rows of J_p^inv.
         condition: f64,
     },
-    /// There is no actuator of this number.
+    /// There is no actuator of this index.
     NoActuator {
-        /// The number, counted from 0.
+        /// The index, counted from 0.
         index: usize,
-        /// How many actuators there are.
+        /// Number of actuators.
         actuators: usize,
     },
     /// The forward kinematics did not converge from the start pose.
@@ -71,31 +73,31 @@ pub enum Error {
         /// The input's name.
         input: &'static str,
     },
-    /// A number of an input is larger than [`Largest`](crate::limits::Largest) allows: values computed from it
-    /// might be too large for a number.
+    /// A number of an input exceeds [`Largest`](crate::limits::Largest): values computed from it
+    /// might overflow.
     OutOfRange {
         /// The input's name.
         input: &'static str,
     },
-    /// The quaternion of a pose has no direction, so that it is no rotation.
+    /// The quaternion of a pose is zero and represents no rotation.
     ZeroQuaternion {
         /// The input's name.
         input: &'static str,
     },
-    /// A value on the way to the results, or a result, is too large for a number, although all inputs are in range.
+    /// An intermediate value or a result overflows, although all inputs are in range.
     Overflow,
-    /// A function was given another number of inputs than it takes.
+    /// A function was called with the wrong number of inputs.
     Inputs {
-        /// Inputs that the function takes.
+        /// Number of inputs of the function.
         expected: usize,
-        /// Inputs that were given.
+        /// Number of inputs given.
         found: usize,
     },
     /// A slice has the wrong number of elements.
     Length {
-        /// Elements that the function needs.
+        /// Number of elements required.
         expected: usize,
-        /// Elements that were given.
+        /// Number of elements given.
         found: usize,
     },
     /// The model does not offer the function.
@@ -105,7 +107,7 @@ pub enum Error {
     },
 }
 
-/// How many times smaller than at home something is; infinitely many times is zero.
+/// Formats how many times smaller a value is than at home; infinity means zero.
 struct Smaller(f64);
 
 impl fmt::Display for Smaller {
@@ -191,17 +193,17 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// The actuators that are to determine the platform's motion.
+/// A group of actuators that may determine the platform's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ActuatorGroup {
-    /// All of them: case 1.
+    /// All actuators, as in the platform projection.
     All,
-    /// Those that case 2 keeps.
+    /// The kept actuators of the actuator projection.
     Kept,
 }
 
 impl fmt::Display for ActuatorGroup {
-    /// `actuators` or `kept actuators`
+    /// Writes `actuators` or `kept actuators`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::All => "actuators",
@@ -210,12 +212,13 @@ impl fmt::Display for ActuatorGroup {
     }
 }
 
-/// A set of actuators, by their numbers in the order of q and τ, counted from 0.
+/// A set of actuators, by their indices in the order of q and τ, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Actuators(u64);
 
 impl Actuators {
-    /// The set of the given actuators. Numbers from 64 on are left out: the set serves messages.
+    /// The set of the given actuators. Indices from 64 on are left out, since the set is used in
+    /// messages only.
     #[must_use]
     pub fn new(numbers: &[usize]) -> Self {
         let bit = |at: &usize| u32::try_from(*at).ok().and_then(|at| 1_u64.checked_shl(at));
@@ -229,7 +232,7 @@ impl Actuators {
 }
 
 impl fmt::Display for Actuators {
-    /// `0, 1, 3 (counted from 0)`
+    /// Writes `0, 1, 3 (counted from 0)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (place, number) in self.iter().enumerate() {
             let comma = if place == 0 { "" } else { ", " };
@@ -244,7 +247,7 @@ impl fmt::Display for Actuators {
 pub struct SampleError {
     /// Index of the sample, counted from 0.
     pub sample: usize,
-    /// What went wrong there.
+    /// The error.
     pub error: Error,
 }
 

@@ -1,13 +1,13 @@
-//! The table of a robot's functions: names, meaning, equations, inputs, shapes.
+//! Table of a robot's functions: names, descriptions, equations, inputs, shapes.
 
 use crate::columns::Columns;
 use crate::size::{Extent, Input, Sizes};
 
-/// What a robot needs to have a function.
+/// Condition for a robot to have a function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Condition {
-    /// Nothing: every robot has it.
+    /// None: every robot has the function.
     Any,
     /// A platform; without one there is no closure.
     Platform,
@@ -17,18 +17,17 @@ pub enum Condition {
     Payload,
     /// Forward kinematics in closed form.
     ClosedForm,
-    /// Joints that Newton's method finds, for want of a closed form.
+    /// Joints by Newton's method, without closed form.
     NumericJoints,
-    /// A free platform whose legs block directions that change with its pose.
+    /// A platform with parasitic motion.
     Parasitic,
-    /// Loops, with joints that follow from the pose by rule.
+    /// Loops, with joints in closed form.
     JointsByRule,
 }
 
-/// A function of a robot; [`Function::summary`] says what each computes.
+/// A function of a robot; [`Function::summary`] describes each.
 ///
-/// The enum is open to be matched whole: whoever derives or evaluates functions is told by the compiler
-/// when one is added.
+/// The enum is exhaustive: the compiler reports code that does not handle a new function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "`Function::summary` says what each is")]
 pub enum Function {
@@ -71,7 +70,7 @@ struct Entry {
     summary: &'static str,
     inputs: &'static [Input],
     rows: Extent,
-    /// None for a vector.
+    /// `None` for a vector.
     columns: Option<Extent>,
     condition: Condition,
 }
@@ -387,7 +386,7 @@ impl Function {
         }
     }
 
-    /// The name without what the function is evaluated from.
+    /// The name without the input motion.
     #[must_use]
     pub const fn name(self) -> &'static str {
         self.entry().name
@@ -399,8 +398,9 @@ impl Function {
         self.entry().summary
     }
 
-    /// The inputs in the order in which the function takes them. Those of a robot without a platform are
-    /// called by [`Input::name_without_platform`].
+    /// The inputs in the order of the arguments.
+    ///
+    /// For a robot without a platform their names are [`Input::name_without_platform`].
     #[must_use]
     pub const fn inputs(self) -> &'static [Input] {
         self.entry().inputs
@@ -417,7 +417,7 @@ impl Function {
         (sizes.extent(entry.rows), columns)
     }
 
-    /// Rows and columns of the output in terms of the robot's sizes; a vector has no columns.
+    /// Rows and columns of the output as sizes of the robot; `None` columns for a vector.
     #[must_use]
     pub const fn extents(self) -> (Extent, Option<Extent>) {
         let entry = self.entry();
@@ -430,13 +430,13 @@ impl Function {
         self.entry().columns.is_none()
     }
 
-    /// What a robot needs to have the function.
+    /// Condition for a robot to have the function.
     #[must_use]
     pub const fn condition(self) -> Condition {
         self.entry().condition
     }
 
-    /// Standard or base columns, where the function has columns of parameters.
+    /// Standard or base columns, if the function has columns of parameters.
     #[must_use]
     pub const fn columns(self) -> Option<Columns> {
         match self.entry().columns {
@@ -446,7 +446,7 @@ impl Function {
         }
     }
 
-    /// Standard or base parameters, where the function takes their values.
+    /// Standard or base parameters, if the function has their values as an input.
     #[must_use]
     pub const fn parameters(self) -> Option<Columns> {
         match self {
@@ -459,7 +459,7 @@ impl Function {
         }
     }
 
-    /// Whether it is the form of a function with base parameters, be they columns or values that it takes.
+    /// Whether the function uses base parameters, as columns or as an input.
     #[must_use]
     pub const fn is_of_base_parameters(self) -> bool {
         let of = match self.columns() {

@@ -1,10 +1,13 @@
-//! What the generator, the interpreter, the generated code and those who call it agree on.
+//! Common definitions of the generator, the interpreter, generated code and its callers.
 //!
-//! [`function`] is the one table of a robot's functions: what each is called and means, what it takes
-//! and which shape its output has. [`parameter`] are the fourteen standard parameters of the paper and the
-//! coefficient of a spring, [`error`] is what can go wrong at a state, [`singular`] from where on a
-//! configuration counts as singular and [`limits`] from where on other numbers are zero, [`trigonometry`] the
-//! polynomials by which all backends compute sines and cosines, and [`text`] says which characters may not stand in what is written of a description.
+//! - [`function`] is the table of a robot's functions: names, descriptions, inputs and output
+//!   shapes.
+//! - [`parameter`] has the fourteen standard parameters of the paper, and those of springs and
+//!   special friction.
+//! - [`error`] has the errors at a state.
+//! - [`singular`] and [`limits`] have the thresholds for singularity, for zero and for overflow.
+//! - [`trigonometry`] has the polynomials by which all backends compute sines and cosines.
+//! - [`text`] defines the characters that are removed from text of descriptions.
 //!
 //! The crate is `no_std`, has no dependencies and allocates nothing.
 #![no_std]

@@ -1,10 +1,10 @@
-//! From where on numbers count as zero, and which are too large, for each precision that robots are computed in.
+//! Numerical limits for each precision: thresholds for zero, and largest magnitudes.
 //!
-//! A limit is a number of roundings away from zero, and so of another size where numbers are shorter. The
-//! runtime, the interpreter and generated C take theirs from here.
+//! Thresholds are multiples of the rounding error, so they depend on the precision. The runtime,
+//! the interpreter and generated C use these values.
 //!
-//! Inputs of generated functions are bounded by [`Largest`]. With these bounds the generator proves that no value of
-//! a function overflows, and puts a guard on each value for which it cannot.
+//! Inputs of generated functions are bounded by [`Largest`]. With these bounds the generator proves
+//! that no value of a function overflows, and adds a guard to each value for which it cannot.
 
 use crate::singular::SINGULAR;
 
@@ -13,23 +13,28 @@ use crate::singular::SINGULAR;
 pub struct Limits {
     /// A determinant below this fraction of its magnitude at home counts as zero.
     pub singular: f64,
-    /// A radicand of inverse or forward kinematics below this fraction of its value at home is lost in rounding: its
-    /// root has less than two digits.
+    /// A radicand of inverse or forward kinematics below this fraction of its value at home is
+    /// dominated by rounding: its root has less than two digits.
     pub radicand: f64,
-    /// How far from 1 the square of a quaternion's length may be for its inverse root to be linear: the error is 3/8
-    /// of the square of this.
+    /// Largest deviation of a quaternion's squared length from 1 for which its inverse root is
+    /// linearised.
+    ///
+    /// The error is 3/8 of the square of this.
     pub quaternion: f64,
     /// Forward kinematics has converged when the largest step is below this (m, rad).
     pub step: f64,
-    /// Beyond (m, rad) a pose is rounded by more than that step, and steps vanish that have led nowhere.
+    /// Magnitude (m, rad) beyond which a pose has a rounding error above that step.
+    ///
+    /// Vanishing steps do not mean convergence there.
     pub farthest: f64,
     /// A pivot of the normal matrix below this fraction of the largest counts as zero.
     pub pivot: f64,
     /// Newton's method on the joints has converged when the largest step is below this (m, rad).
     pub joint_step: f64,
-    /// A leg whose closure errors (m, rad) are smaller counts as closed when the iterations are used up.
+    /// A leg whose closure errors (m, rad) are below this counts as closed after the last
+    /// iteration.
     pub closed: f64,
-    /// A partition of case 2 whose condition number is larger counts as singular.
+    /// A partition whose condition number exceeds this counts as singular.
     pub partition: f64,
     /// Largest magnitudes of inputs.
     pub largest: Largest,
@@ -44,7 +49,7 @@ pub struct Largest {
     pub position: f64,
     /// Twists, rates of joints and actuators (m/s, rad/s).
     pub velocity: f64,
-    /// Their derivatives (m/s², rad/s²).
+    /// Accelerations (m/s², rad/s²).
     pub acceleration: f64,
     /// Forces and torques (N, N m).
     pub force: f64,
@@ -67,7 +72,7 @@ impl Largest {
     }
 }
 
-/// Of numbers of 64 bits, whose roundings are 10⁻¹⁶ of them.
+/// Limits for double precision, with a relative rounding error of 10⁻¹⁶.
 pub const DOUBLE: Limits = Limits {
     singular: SINGULAR,
     radicand: 1e-13,
@@ -88,8 +93,10 @@ pub const DOUBLE: Limits = Limits {
     },
 };
 
-/// Of numbers of 32 bits, whose roundings are 6 · 10⁻⁸ of them. Lengths and angles of about 1 are known to 10⁻⁷, and
-/// steps of an iteration, which divide by a Jacobian, to some 10⁻⁶.
+/// Limits for single precision, with a relative rounding error of 6 · 10⁻⁸.
+///
+/// Lengths and angles of about 1 have an accuracy of 10⁻⁷. Steps of an iteration, which divide by a
+/// Jacobian, have about 10⁻⁶.
 pub const SINGLE: Limits = Limits {
     singular: 1e-5,
     radicand: 1e-5,

@@ -1,6 +1,7 @@
-//! The fourteen standard parameters of a body and its joint, and what a joint may have beside them: the
-//! stiffness of a spring, friction of its own in each direction, friction that rises towards
-//! standstill or with a load.
+//! Standard parameters of a body and its joint, and optional ones of a joint.
+//!
+//! The optional ones are the stiffness of a spring, friction that differs by direction, and
+//! friction that increases towards standstill or with a load.
 
 /// A standard parameter, eq. (2); the order is that of the paper's χ, which ends with the offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,7 +26,7 @@ pub enum StandardParameter {
     Mz,
     /// Mass, kg.
     M,
-    /// Inertia of rotor and gears on the joint's side, kg m² or kg.
+    /// Inertia of rotor and gears, joint side, kg m² or kg.
     Ia,
     /// Viscous friction, N m s/rad or N s/m.
     Fv,
@@ -33,24 +34,24 @@ pub enum StandardParameter {
     Fs,
     /// Constant offset of friction and drive, N m or N.
     Off,
-    /// Coefficient of a joint's spring, N m/rad or N/m of a linear one.
+    /// Coefficient of a joint's spring, N m/rad, or N/m for a linear one.
     K,
-    /// Viscous friction where the velocity is positive, N m s/rad or N s/m.
+    /// Viscous friction at positive velocity, N m s/rad or N s/m.
     FvPos,
-    /// Coulomb friction where the velocity is positive, N m or N.
+    /// Coulomb friction at positive velocity, N m or N.
     FsPos,
-    /// Viscous friction where the velocity is negative, N m s/rad or N s/m.
+    /// Viscous friction at negative velocity, N m s/rad or N s/m.
     FvNeg,
-    /// Coulomb friction where the velocity is negative, N m or N.
+    /// Coulomb friction at negative velocity, N m or N.
     FsNeg,
-    /// What Coulomb friction has more at standstill than at speed (Stribeck), N m or N.
+    /// Excess of static over Coulomb friction (Stribeck), N m or N.
     Fst,
-    /// Part of a known load that is dry friction, 1 of a load in N m or N.
+    /// Ratio of dry friction to a known load; dimensionless for a load in N m or N.
     Fl,
 }
 
 impl StandardParameter {
-    /// The fourteen of every joint and its body, in order.
+    /// The fourteen parameters of a joint and its body, in order.
     pub const ALL: [Self; 14] = [
         Self::Xx,
         Self::Xy,
@@ -68,7 +69,7 @@ impl StandardParameter {
         Self::Off,
     ];
 
-    /// The ten of a rigid body.
+    /// The ten inertial parameters of a rigid body.
     pub const INERTIA: [Self; 10] = [
         Self::Xx,
         Self::Xy,
@@ -82,16 +83,16 @@ impl StandardParameter {
         Self::M,
     ];
 
-    /// The four that act on the coordinate of a joint and not on its body.
+    /// The four parameters that act on a joint's coordinate and not on its body.
     pub const DRIVE: [Self; 4] = [Self::Ia, Self::Fv, Self::Fs, Self::Off];
 
-    /// The three of friction.
+    /// The three friction parameters.
     pub const FRICTION: [Self; 3] = [Self::Fv, Self::Fs, Self::Off];
 
-    /// The four of friction that differs by direction; they take the place of [`Self::FRICTION`].
+    /// The four parameters of friction that differs by direction; they replace [`Self::FRICTION`].
     pub const DIRECTED: [Self; 4] = [Self::FvPos, Self::FsPos, Self::FvNeg, Self::FsNeg];
 
-    /// Field-standard name, `zz` for instance.
+    /// Standard name, such as `zz`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -119,14 +120,15 @@ impl StandardParameter {
         }
     }
 
-    /// The parameter with this name, among those that a description lists: others come with a key of their own.
+    /// The parameter of this name, among those that a description lists; others have keys of their
+    /// own.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let mut listed = Self::ALL.into_iter().chain(Self::DIRECTED);
         listed.find(|p| p.name() == name)
     }
 
-    /// Whether it belongs to the rigid body and not to the joint.
+    /// Whether it is an inertial parameter of the body.
     #[must_use]
     pub const fn is_inertial(self) -> bool {
         matches!(
@@ -144,20 +146,20 @@ impl StandardParameter {
         )
     }
 
-    /// Whether it is friction that follows the rate of its coordinate, so that its column changes where that
+    /// Whether it is friction that depends on the rate, so that its column changes when the rate
     /// reverses.
     #[must_use]
     pub const fn follows_rate(self) -> bool {
         self.is_viscous() || self.has_sign()
     }
 
-    /// Whether it is friction in proportion to the velocity.
+    /// Whether it is viscous friction, proportional to the velocity.
     #[must_use]
     pub const fn is_viscous(self) -> bool {
         matches!(self, Self::Fv | Self::FvPos | Self::FvNeg)
     }
 
-    /// Whether it is friction that jumps where its coordinate reverses.
+    /// Whether it is friction that jumps when the velocity changes sign.
     #[must_use]
     pub const fn has_sign(self) -> bool {
         matches!(
@@ -166,7 +168,7 @@ impl StandardParameter {
         )
     }
 
-    /// Whether no body or joint has a negative one.
+    /// Whether physically consistent values are nonnegative.
     #[must_use]
     pub const fn is_nonnegative(self) -> bool {
         matches!(
@@ -185,7 +187,7 @@ impl StandardParameter {
         )
     }
 
-    /// SI unit; `slides` says whether the joint is prismatic.
+    /// SI unit; `slides` is true for a prismatic joint.
     #[must_use]
     pub const fn unit(self, slides: bool) -> &'static str {
         match self {

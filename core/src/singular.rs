@@ -1,8 +1,10 @@
-//! From where on a configuration counts as singular.
+//! Thresholds for singular configurations.
 
 /// A determinant below this fraction of its magnitude in the home configuration counts as zero.
 pub const SINGULAR: f64 = 1e-9;
 
-/// By how much a pose may miss what the legs of a platform that moves aside allow, rad, and in units of the
-/// robot's length: what a measured pose is off, and little enough for the model.
+/// Largest closure error of a pose of a platform with parasitic motion, rad and in units of the
+/// robot's length.
+///
+/// It covers the errors of measured poses, and is small enough for the model.
 pub const CLOSED: f64 = 1e-4;

@@ -1,9 +1,9 @@
-//! The sizes of a robot, and the quantities and extents that are counted by them.
+//! Sizes of a robot, and the quantities and extents that depend on them.
 
 /// The sizes of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// Numbers in a pose (r for all motions but those with a quaternion).
+    /// Numbers in a pose (r for all motions without a quaternion).
     pub pose: usize,
     /// r, independent platform coordinates.
     pub dof: usize,
@@ -11,7 +11,8 @@ pub struct Sizes {
     pub actuators: usize,
     /// n_t, joints of all legs.
     pub joints: usize,
-    /// n_st, standard parameters whose column is not identically zero, without the payload's.
+    /// n_st, standard parameters whose column is not identically zero, without those of the
+    /// payload.
     pub parameters: usize,
     /// Base parameters: independent columns.
     pub base_parameters: usize,
@@ -37,7 +38,7 @@ impl Sizes {
         }
     }
 
-    /// Number of rows or columns that an extent stands for.
+    /// Number of rows or columns of an extent.
     #[must_use]
     pub const fn extent(&self, extent: Extent) -> usize {
         match extent {
@@ -54,15 +55,19 @@ impl Sizes {
         }
     }
 
-    /// Velocities of the platform as a free body in the directions of its pose: six where the orientation is a
-    /// quaternion beside a position. The independent coordinates are these, or some of them.
+    /// Number of velocity components of the platform as a free body, along its pose coordinates.
+    ///
+    /// Six if the pose is a position and a quaternion. The independent coordinates are these or
+    /// some of them.
     #[must_use]
     pub const fn free(&self) -> usize {
         self.pose.saturating_sub(1)
     }
 
-    /// Directions that the legs block, which is why the other coordinates of a pose follow from the
-    /// independent ones; none but for a platform that moves aside.
+    /// Number of directions that the legs block, so that other pose coordinates depend on the
+    /// independent ones.
+    ///
+    /// Zero unless the platform has parasitic motion.
     #[must_use]
     pub const fn blocked(&self) -> usize {
         self.free().saturating_sub(self.dof)
@@ -75,7 +80,7 @@ impl Sizes {
     }
 }
 
-/// A quantity that enters a function.
+/// An input quantity of a function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Input {
@@ -95,11 +100,11 @@ pub enum Input {
     ActuatorAccelerations,
     /// Actuator forces and torques τ (N, N m).
     Torques,
-    /// Values of the standard parameters followed by the payload's, in column order.
+    /// Values of the standard parameters, then of the payload, in column order.
     Parameters,
-    /// Values of the base parameters, all others regrouped into them, followed by the payload's.
+    /// Values of the base parameters, with all others regrouped, then of the payload.
     BaseParameters,
-    /// Coordinates of the internal torque on the basis of the null space (N, N m).
+    /// Coordinates of the internal torques in the basis of the null space (N, N m).
     Preload,
 }
 
@@ -122,7 +127,7 @@ impl Input {
         }
     }
 
-    /// The input as a robot without a loop calls it, whose pose are its joint positions.
+    /// The name in a robot without a loop, whose pose consists of its joint positions.
     #[must_use]
     pub const fn name_without_platform(self) -> &'static str {
         match self {
@@ -134,7 +139,7 @@ impl Input {
     }
 }
 
-/// The number of rows or columns of an output, in terms of the robot's sizes.
+/// The number of rows or columns of an output, as a size of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Extent {
@@ -154,7 +159,8 @@ pub enum Extent {
     BaseParameters,
     /// n_l, the payload's parameters.
     PayloadParameters,
-    /// Velocities of the platform as a free body: three of its origin, three about the axes.
+    /// Velocity components of the platform as a free body: three of its origin, three about the
+    /// axes.
     Free,
     /// Directions that the legs block.
     Blocked,

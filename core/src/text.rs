@@ -1,7 +1,9 @@
-//! Which characters of a text that a person wrote may not stand in what others read.
+//! Invisible characters, which are not allowed in output for readers.
 
-/// Whether a character is a control or a format character: it has no glyph, or turns the direction of
-/// what follows, or lets two different names look alike.
+/// Whether a character is a control or a format character.
+///
+/// Such a character has no glyph, changes the writing direction, or makes different names look
+/// alike.
 #[must_use]
 pub fn is_invisible(c: char) -> bool {
     c.is_control()

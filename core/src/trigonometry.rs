@@ -1,16 +1,17 @@
-//! The numbers by which sines and cosines of many angles are computed at once.
+//! Constants for the computation of sines and cosines of many angles at once.
 //!
-//! An angle x is reduced to r in [-π/4, π/4] by a multiple n of π/2 that is subtracted in three parts
-//! (Cody and Waite): the first two have 33 bits, so that their products with n are exact. Sine and cosine
-//! of r are the minimax polynomials of fdlibm. The two lowest bits of n exchange them and turn their signs.
+//! An angle x is reduced to r in [-π/4, π/4] by a multiple n of π/2, subtracted in three parts
+//! (Cody and Waite). The first two parts have 33 bits, so that their products with n are exact.
+//! Sine and cosine of r are the minimax polynomials of fdlibm. The two lowest bits of n exchange
+//! them and set their signs.
 //!
-//! The compiled backend computes with vector types and the interpreted one with loops over blocks; both
-//! take their numbers from here.
+//! The compiled backend uses vector types and the interpreter loops over blocks; both use these
+//! constants.
 
-/// Largest angle (rad) that is reduced in this way; beyond it the library's own functions answer.
+/// Largest angle (rad) for this reduction; larger ones use the library's functions.
 pub const LARGEST: f64 = 1e5;
 
-/// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which then stands in the lowest bits.
+/// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which is then in the lowest bits.
 pub const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// π/2 in three parts: 33 bits, 33 bits, the rest.
@@ -40,13 +41,15 @@ pub const COSINE: [f64; 6] = [
     4.166_666_666_666_66e-2,
 ];
 
-/// The same for numbers of 32 bits: π/2 in four parts, of which the first three have 11 bits, and polynomials of
-/// three terms, the best for the largest relative error up to π/4 (0.06 units in the last place).
+/// Constants for single precision: π/2 in four parts, the first three with 11 bits, and polynomials
+/// of three terms.
+///
+/// The polynomials minimise the largest relative error up to π/4 (0.06 units in the last place).
 pub mod single {
-    /// Largest angle (rad) that is reduced in this way; beyond it the library's own functions answer.
+    /// Largest angle (rad) for this reduction; larger ones use the library's functions.
     pub const LARGEST: f32 = 8192.0;
 
-    /// Adding and subtracting 1.5 × 2²³ rounds to an integer, which then stands in the lowest bits.
+    /// Adding and subtracting 1.5 × 2²³ rounds to an integer, which is then in the lowest bits.
     pub const ROUND: f32 = 12_582_912.0;
 
     /// π/2 in four parts: three of 11 bits, whose products with a multiple below 2¹³ are exact, and the rest.

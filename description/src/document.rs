@@ -1,4 +1,4 @@
-//! The whole of a description, evaluated.
+//! A complete description, evaluated.
 
 use crate::effort::Effort;
 use crate::experiments::controller::Controller;
@@ -17,17 +17,17 @@ pub struct Description {
     pub name: Spanned<String>,
     /// One sentence.
     pub summary: String,
-    /// Where the numbers come from.
+    /// Origin of the numbers.
     pub source: String,
-    /// How hard the generator searches for fewer operations; `None` leaves it to whoever generates.
+    /// Effort of the search for fewer operations; `None` for the generator's default.
     pub effort: Option<Effort>,
-    /// Which columns stand for the base parameters; `None` leaves it to the kind of robot.
+    /// Choice of the base parameters' columns; `None` for the default of the kind of robot.
     pub base_columns: Option<BaseColumns>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
-    /// Names of the payloads, where there are several.
+    /// Names of the payloads, if there are several.
     pub payloads: Vec<Spanned<String>>,
-    /// The named constants that are no angles, in SI units.
+    /// Named constants that are not angles, in SI units.
     pub constants: Vec<(String, f64)>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
@@ -35,39 +35,41 @@ pub struct Description {
     pub legs: Vec<Leg>,
     /// The virtual experiment.
     pub experiment: Option<Experiment>,
-    /// What a search of exciting trajectories keeps to.
+    /// Limits of the search for exciting trajectories.
     pub excitation: Option<Excitation>,
-    /// How a measured log maps on the robot.
+    /// Mapping of measured logs to the robot.
     pub data: Option<Data>,
-    /// The loops with which measured runs were made.
+    /// Controller of measured runs.
     pub controller: Option<Controller>,
-    /// What is believed of the parameters before data speak.
+    /// Prior knowledge of the parameters.
     pub prior: Prior,
     /// Settings of the identification.
     pub identification: Identification,
-    /// What the text says that may not be meant, in the order of the text: numbers without a unit that are
-    /// those of another one, for instance.
+    /// Warnings about text that is probably not intended, sorted by location.
+    ///
+    /// Examples are numbers without a unit that would fit another unit.
     pub doubts: Vec<Spanned<String>>,
 }
 
-/// Which independent columns stand for the base parameters, among choices of equal rank.
+/// Choice of the columns that represent the base parameters, among sets of equal rank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BaseColumns {
-    /// The platform's first, then each parameter of all legs together, eq. (43): the same ones in legs
-    /// that are alike.
+    /// Those of the platform first, then each parameter of all legs together, eq. (43).
+    ///
+    /// Equal legs then have the same ones.
     Symmetric,
-    /// Those that take the fewest operations.
+    /// Those with the fewest operations.
     Cheapest,
 }
 
 impl BaseColumns {
-    /// All, with their names in descriptions.
+    /// All choices, with their names in descriptions.
     pub const ALL: [(&'static str, Self); 2] =
         [("symmetric", Self::Symmetric), ("cheapest", Self::Cheapest)];
 }
 
 impl Description {
-    /// The name as a Rust type: `dual_v` becomes `DualV`.
+    /// Name of the Rust type: `dual_v` becomes `DualV`.
     #[must_use]
     pub fn type_name(&self) -> String {
         type_name(&self.name.value)

@@ -1,19 +1,20 @@
-//! How hard a function's operations are searched, as a description, an attribute or a user asks for it.
+//! Effort of the search for fewer operations, as requested by a description, an attribute or a
+//! user.
 
-/// How much work fewer operations are worth, in a whole model.
+/// Effort of the search for fewer operations in a whole model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
 pub enum Effort {
-    /// None: the derivation's own form stays.
+    /// No search: the forms of the derivation are kept.
     None,
-    /// Within a few in a hundred of the thorough search, in a small part of its time.
+    /// Within a few percent of the thorough search, in a fraction of its time.
     #[default]
     Quick,
-    /// As long as something is found.
+    /// As long as savings are found.
     Thorough,
 }
 
 impl Effort {
-    /// All, the least first.
+    /// All, in ascending order.
     pub const ALL: [Self; 3] = [Self::None, Self::Quick, Self::Thorough];
 
     /// The name in descriptions, attributes and on the command line.
@@ -26,7 +27,7 @@ impl Effort {
         }
     }
 
-    /// The effort with a name.
+    /// The effort of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|effort| effort.name() == name)

@@ -1,12 +1,11 @@
-//! TOML to [`Description`]: every field evaluated and with its place in the text.
+//! Reads a TOML file into a [`Description`]: every field evaluated, with its location in the text.
 //!
-//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. Reading
-//! it goes down the tables: [`parse`] reads the root, which reads constants, platform, shapes (legs
-//! written once) and placements (shapes evaluated with values of their own), and then the tables
-//! about experiments, which name what came before. All errors are noted with their places and
-//! reported together.
+//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. [`parse`]
+//! reads the root, then constants, platform, shapes (legs described once) and placements (shapes
+//! evaluated with values of their own). Tables about experiments follow, which refer to the former
+//! by name. All errors are collected with their locations and reported together.
 //!
-//! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
+//! Numbers are exact: decimals are fractions, angles are multiples of π plus fractions of a radian.
 
 pub mod diagnostic;
 mod document;
@@ -46,7 +45,7 @@ pub use toml_text::place::place;
 /// Reads a description.
 ///
 /// # Errors
-/// Everything that is wrong with it, in order of the text.
+/// All errors, in order of the text.
 pub fn parse(source: &Source) -> Result<Description, Diagnostics> {
     root::read(source)
 }

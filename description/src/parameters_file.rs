@@ -1,4 +1,4 @@
-//! Standard parameters in a file of their own, as an identification writes them.
+//! Standard parameters in a separate file, as written by an identification.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source};
 use crate::document::Description;
@@ -9,10 +9,11 @@ use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use toml::de::DeTable;
 
-/// Reads a file with a table `[parameters]` of a robot's standard parameters, as an identification writes it.
+/// Reads a file with a table `[parameters]` of a robot's standard parameters, as written by an
+/// identification.
 ///
 /// # Errors
-/// Everything that is wrong with it, and parameters of the robot (not those of its payload) that are missing.
+/// All errors, and missing parameters of the robot (except for those of its payload).
 pub fn parse_parameters(
     source: &Source,
     description: &Description,
@@ -37,7 +38,7 @@ pub fn parse_parameters(
     let of_other = table
         .get("robot")
         .and_then(|item| of_other(&item, description));
-    // Its parameters would be wrong one by one.
+    // All parameters would be wrong.
     if let Some(of_other) = of_other {
         return Err(of_other.into());
     }
@@ -46,7 +47,7 @@ pub fn parse_parameters(
     context.into_errors().into_result(found.unwrap_or_default())
 }
 
-/// What is said of parameters of another robot than the described one.
+/// The error for parameters of a robot other than the described one.
 fn of_other(item: &Item<'_, '_>, description: &Description) -> Option<Diagnostic> {
     let name = item.string()?;
     let own = [description.name.value.clone(), description.type_name()];

@@ -1,4 +1,4 @@
-//! The description as a whole.
+//! The complete description.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source};
 use crate::document::{BaseColumns, Description, type_name};
@@ -15,7 +15,7 @@ use overact_exact::{Number, Ratio};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
 
-/// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
+/// Largest number of joints of a robot: the check takes seconds, a model takes too long.
 const MOST_JOINTS: usize = 200;
 
 /// Words that cannot name a type.
@@ -40,7 +40,7 @@ pub(crate) fn read(source: &Source) -> Result<Description, Diagnostics> {
     match description {
         Some(description) => errors.into_result(description),
         None => {
-            // Every reader that gives up reports why; a slip there must not read as success.
+            // Readers that fail report the reason; a missing report must not look like success.
             if errors.is_empty() {
                 errors.push(Diagnostic::global(
                     Code::INCOMPLETE,
@@ -52,7 +52,7 @@ pub(crate) fn read(source: &Source) -> Result<Description, Diagnostics> {
     }
 }
 
-/// The parser's first message: what follows a broken line is mostly its consequence.
+/// The parser's first message: later ones are mostly consequences of a broken line.
 pub(crate) fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
     let place = |error: &&toml::de::Error| error.span().map_or(usize::MAX, |span| span.start);
     let first = errors.iter().min_by_key(place);
@@ -124,8 +124,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let (settings, loops) = (table.get("identification"), table.get("controller"));
     let (prior, limits) = (table.get("prior"), table.get("excitation"));
     table.finish();
-    // Names and numbers in what follows depend on all legs: a leg that failed would make every one
-    // of them wrong.
+    // Later names and numbers depend on all legs, so a failed leg would cause further errors.
     let complete = platform.is_some() == platform_item.is_some() && !legs.is_empty();
     if !complete || legs.len() != placements(table).len() {
         return None;
@@ -236,7 +235,8 @@ fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<L
     leg::read(&placements(table), shapes, scope)
 }
 
-/// A platform needs leg ends; without one there is a single leg, and no end.
+/// Checks that legs of a platform have ends, and that a robot without a platform has a leg without
+/// one.
 fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, legs: &[Leg]) {
     let has_skeleton = !platform && shapes.iter().any(|shape| shape.end.is_none());
     for shape in shapes {
@@ -258,7 +258,7 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         };
         table.context.report(diagnostic);
     }
-    // Bodies of chains may carry branches of their own.
+    // Bodies of chains may carry branches.
     let has_chains = legs.iter().any(|leg| leg.end.is_some());
     let is_branch = |leg: &&Leg| {
         let body = shapes
@@ -281,7 +281,7 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Springs and known torques are described of robots without loops, whose joints are measured.
+/// Springs and known torques are supported in robots without loops, whose joints are measured.
 fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     if !is_closed {
         return;
@@ -308,8 +308,8 @@ fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     }
 }
 
-/// Motors that turn several joints are known of robots without loops: the frame that ends a leg is the last
-/// joint's.
+/// Motors of several joints are supported in robots without loops: a leg's last frame has to be
+/// that of a joint.
 fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     let mut joints = legs.iter().flat_map(|leg| &leg.joints);
     if let (true, Some(motor)) = (is_closed, joints.find(|joint| joint.motor.is_some())) {
@@ -321,12 +321,12 @@ fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     }
 }
 
-/// Without actuators there is nothing to identify from.
+/// Without actuators nothing can be identified.
 fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
     let count = actuators(legs).len();
     let Some(platform) = platform else {
         let first = legs.iter().flat_map(|leg| &leg.joints).next();
-        // After another error nobody knows which joints were meant to be actuated.
+        // After another error the intended actuated joints are unknown.
         if let (0, Some(joint), true) = (count, first, table.context.is_clean()) {
             let diagnostic = Diagnostic::new(
                 Code::ACTUATED,
@@ -340,13 +340,13 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         return;
     };
     let dof = platform.motion.value.coordinates().len();
-    // Of missing actuators the mechanism tells, which knows what motions the legs leave.
+    // Missing actuators are reported by the mechanism, which knows the allowed motions.
     if count >= dof {
         check_redundancy(table, platform, legs);
     }
 }
 
-/// The robot has as many actuators beyond its coordinates as it is said to have.
+/// Checks the stated number of redundant actuators.
 fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
     let robot = Inventory {
         platform: Some(platform),
@@ -390,7 +390,7 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
     );
 }
 
-/// Refuses robots with more joints than can be worked on, before their names are compared with one another.
+/// Rejects robots with too many joints, before names are compared.
 fn check_joint_count(
     table: &Table<'_, '_>,
     name: Option<&Spanned<String>>,
@@ -408,7 +408,7 @@ fn check_joint_count(
     None
 }
 
-/// Leg and joint names are joined by underscores, so two bodies can come by the same name.
+/// Leg and joint names are joined by underscores, so two bodies may get the same name.
 fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
     let joined = |leg: &Leg, joint: &crate::robot::model::Joint| {
         format!("{}_{}", joint.name.value, leg.name.value)
@@ -422,7 +422,7 @@ fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
             legs.insert(&leg.name.value);
         }
     }
-    // Legs of the same name are an error of their own.
+    // Legs of the same name are a separate error.
     for leg in robot
         .legs
         .iter()

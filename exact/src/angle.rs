@@ -106,7 +106,7 @@ impl Angle {
         (exact(cosine, image_cosine), exact(sine, image_sine))
     }
 
-    /// The point of the field's circle that stands for the angle.
+    /// The point on the field's circle that represents the angle.
     #[must_use]
     pub fn circle_point(self) -> Element {
         let turns = Element::half_turns(self.half_turns.numerator(), self.half_turns.denominator())
@@ -118,7 +118,7 @@ impl Angle {
     }
 }
 
-/// A constant whose image is zero is zero, whatever the rounding of the float says.
+/// The constant, which is exactly zero if its image is zero, regardless of rounding.
 #[inline]
 fn exact(value: f64, image: Element) -> Number {
     if image == Element::ZERO {
@@ -133,8 +133,11 @@ fn hash(ratio: Ratio) -> u64 {
     mix(ratio.numerator() as u64 ^ mix(ratio.denominator() as u64))
 }
 
-/// The point of a nanoradian, free but fixed, to the power of the nanoradians; so decimal radians
-/// add up exactly. A fraction that is no multiple of a nanoradian gets a point of its own.
+/// The point of a number of radians: that of a nanoradian, which is fixed but arbitrary, to a
+/// power.
+///
+/// So decimal radians add up exactly. A fraction that is not a multiple of a nanoradian gets its
+/// own point.
 #[inline]
 fn radian_point(radians: Ratio) -> Element {
     const UNIT: i128 = 1_000_000_000;

@@ -1,15 +1,15 @@
-//! A finite field in which the meaning of an expression is one number.
+//! A finite field in which expressions have exact values.
 //!
-//! Elements are a + b i over the integers modulo the prime `P`. Two facts make the field a faithful
-//! picture of the reals that robots are made of:
+//! Elements are a + b i over the integers modulo the prime `P`. Two facts make the field faithful
+//! to the reals that occur in robots:
 //!
 //! - `P` = 3 mod 4, so -1 is no square: every square root of a base-field element exists in GF(P²).
-//! - `P` + 1 = 2^14 3^4 5^11 7 13 17 23, the order of the circle a² + b² = 1. An angle π n/d with
-//!   2d dividing that order *is* a point of the circle, so sines and cosines of decimal degrees are
-//!   exact and every identity between them holds: cos(90 deg) is 0 and 2 cos(30 deg) is √3.
+//! - `P` + 1 = 2^14 3^4 5^11 7 13 17 23, the order of the circle a² + b² = 1. An angle π n/d is a
+//!   point of the circle if 2d divides that order. So sines and cosines of decimal degrees are
+//!   exact, and every identity between them holds: cos(90 deg) is 0 and 2 cos(30 deg) is √3.
 //!
-//! An identity that holds for all real inputs holds here at random inputs; one that does not hold
-//! fails with a probability of about degree / `P` (Schwartz and Zippel).
+//! An identity that holds for all real inputs holds here at random inputs. One that does not hold
+//! is false here, except with a probability of about degree / `P` (Schwartz and Zippel).
 
 use super::hasher::QuickMap;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -21,8 +21,9 @@ pub const P: u64 = 2_305_648_799_999_999_999;
 /// Order of the circle group, `P` + 1.
 pub const CIRCLE: u64 = P + 1;
 
-/// A generator of the circle group, which stands for the angle 2π / `CIRCLE`; of a point and its
-/// mirror image the one whose quarter turn is i.
+/// A generator of the circle group, which represents the angle 2π / `CIRCLE`.
+///
+/// Of a point and its mirror image it is the one whose quarter turn is i.
 const GENERATOR: Element = Element {
     re: 1_682_500_475_675_675_674,
     im: 1_433_241_145_945_945_945,
@@ -49,8 +50,10 @@ fn sub(a: u64, b: u64) -> u64 {
 /// 2^122 / `P`, for Barrett's reduction.
 const RECIPROCAL: u64 = ((1_u128 << 122) / P as u128) as u64;
 
-/// Product modulo `P`. A 128-bit remainder would take ten times as long as the two multiplications
-/// by which Barrett's quotient, at most 3 too small, is had.
+/// Product modulo `P` by Barrett's reduction.
+///
+/// A 128-bit remainder would take ten times as long as the two multiplications. Barrett's quotient
+/// is at most 3 too small.
 #[inline]
 fn mul(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
@@ -75,8 +78,9 @@ fn power(mut base: u64, mut exponent: u64) -> u64 {
     result
 }
 
-/// Inverse modulo `P` by Euclid's extended algorithm; zero for zero. A power would take ten times as
-/// long for the small denominators that most constants have.
+/// Inverse modulo `P` by Euclid's extended algorithm; zero for zero.
+///
+/// A power would take ten times as long for small denominators, which most constants have.
 fn invert(a: u64) -> u64 {
     let (mut r0, mut r1) = (P, a);
     // The factors stay below P, which leaves room for a sign.
@@ -89,7 +93,7 @@ fn invert(a: u64) -> u64 {
     t0.rem_euclid(P as i64) as u64
 }
 
-/// A map from values of nodes.
+/// A map keyed by values of nodes.
 pub type ByValue<T> = QuickMap<Element, T>;
 
 impl Element {
@@ -102,7 +106,7 @@ impl Element {
     #[must_use]
     #[inline]
     pub fn integer(value: i128) -> Self {
-        // Small ones stand for themselves. A Euclidean remainder is never negative and below P.
+        // Small integers are their own images. A Euclidean remainder is nonnegative and below P.
         let re = match u64::try_from(value) {
             Ok(small) if small < P => small,
             _ => value.rem_euclid(i128::from(P)) as u64,
@@ -168,8 +172,9 @@ impl Element {
         result
     }
 
-    /// The point of the circle that stands for the angle π `numerator` / `denominator`, as
-    /// (cosine, sine); `None` if the circle has no point of that order.
+    /// The point on the circle of the angle π `numerator` / `denominator`, as (cosine, sine).
+    ///
+    /// `None` if the circle has no point of that order.
     #[must_use]
     pub fn half_turns(numerator: i128, denominator: i128) -> Option<(Self, Self)> {
         let order = denominator.checked_mul(2)?;
@@ -181,7 +186,7 @@ impl Element {
         Some(GENERATOR.power(exponent).cosine_and_sine())
     }
 
-    /// A point of the circle that stands for a free angle, chosen by 64 random bits.
+    /// A point on the circle for a free angle, determined by 64 random bits.
     #[must_use]
     pub fn circle_point(bits: u64) -> Self {
         let t = Self::from_bits(bits | 1);
@@ -195,15 +200,16 @@ impl Element {
         }
     }
 
-    /// Cosine and sine of the angle that a point of the circle stands for.
+    /// Cosine and sine of the angle that a point on the circle represents.
     #[must_use]
     #[inline]
     pub fn cosine_and_sine(self) -> (Self, Self) {
         (Self { re: self.re, im: 0 }, Self { re: self.im, im: 0 })
     }
 
-    /// A square root of a base-field element, the same one every time; `None` for an element with
-    /// an imaginary part, whose root is not needed here.
+    /// A square root of a base-field element, always the same one.
+    ///
+    /// `None` for an element with an imaginary part, whose root is not needed.
     #[must_use]
     pub fn square_root(self) -> Option<Self> {
         if self.im != 0 {
@@ -224,8 +230,9 @@ impl Element {
         })
     }
 
-    /// The rational n/d with |n|, d below about 2^30 that the element stands for, if there is one
-    /// (Wang's rational reconstruction).
+    /// The rational n/d that the element represents, with |n| and d below about 2^30, if any.
+    ///
+    /// Uses Wang's rational reconstruction.
     #[must_use]
     pub fn to_rational(self) -> Option<(i64, i64)> {
         const BOUND: i64 = 1 << 29;
@@ -256,7 +263,7 @@ impl Element {
         add(self.re, mul(self.im, PROJECTION))
     }
 
-    /// The projection of the difference of two elements by theirs, or of the sum for a `negative` second.
+    /// Projection of a difference from two projections, or of the sum if `negative`.
     #[must_use]
     #[inline]
     pub fn projected_difference(first: u64, second: u64, negative: bool) -> u64 {
@@ -268,31 +275,32 @@ impl Element {
     }
 }
 
-/// The imaginary unit's projection, any large number.
+/// Projection of the imaginary unit, an arbitrary large number.
 const PROJECTION: u64 = 0x1bd1_1bda_a9fc_1a22;
 
 /// A prime factor of `P` - 1, the order of the base field's multiplicative group.
 pub const LOGARITHMS: u32 = 239_857;
 
-/// Logarithms of elements modulo [`LOGARITHMS`]: that of a product is the sum of the factors'.
+/// Discrete logarithms of elements modulo [`LOGARITHMS`]: that of a product is the sum of those of
+/// its factors.
 ///
-/// The norm a² + b² of an element is multiplicative, and its power to (`P` - 1) / [`LOGARITHMS`] is one
-/// of so many roots of unity, whose exponent is looked up (small steps and giant steps).
+/// The norm a² + b² of an element is multiplicative. Its power to (`P` - 1) / [`LOGARITHMS`] is a
+/// root of unity, whose exponent is found by baby steps and giant steps.
 #[derive(Debug)]
 pub struct Logarithms {
     /// Exponents of the first powers of the root of unity.
     small: QuickMap<u64, u32>,
-    /// Its power by which a giant step goes back.
+    /// The inverse power of a giant step.
     giant: u64,
 }
 
-/// Exponents that a giant step goes over.
+/// Number of exponents in a giant step.
 const SMALL: u32 = 1 << 13;
-/// The power that makes a root of unity of a norm.
+/// The exponent that maps a norm to a root of unity.
 const COFACTOR: u64 = (P - 1) / LOGARITHMS as u64;
 
 impl Logarithms {
-    /// The table, which is made once.
+    /// The table, which is computed once.
     #[must_use]
     pub fn get() -> &'static Self {
         static TABLE: OnceLock<Logarithms> = OnceLock::new();
@@ -300,7 +308,8 @@ impl Logarithms {
     }
 
     fn new() -> Self {
-        // The order is prime, so every root of unity but one generates all; most numbers lead to one.
+        // The order is prime, so every root of unity except one is a generator; most numbers give
+        // one.
         let roots = (2..).map(|number| power(number, COFACTOR));
         let root = roots.into_iter().find(|root| *root != 1).unwrap_or(1);
         let mut small = QuickMap::default();
@@ -315,7 +324,7 @@ impl Logarithms {
         }
     }
 
-    /// The logarithm of an element and of its negative; `None` for zero.
+    /// The logarithm of an element or its negative; `None` for zero.
     #[must_use]
     #[inline]
     pub fn of(&self, element: Element) -> Option<u32> {
@@ -381,8 +390,9 @@ impl Mul for Element {
     }
 }
 
-/// The smaller of a value and its negative, and whether it is the negative; of the values at several
-/// points, which change their signs together, the first ones decide.
+/// The smaller of a value and its negative, and whether it is the negative.
+///
+/// Values at several points change their signs together; the first nonzero one decides.
 #[must_use]
 #[inline]
 pub fn canonical<const POINTS: usize>(value: [Element; POINTS]) -> ([Element; POINTS], bool) {

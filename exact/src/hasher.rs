@@ -1,7 +1,7 @@
-//! Hashing of field elements, which are random already, and of what is small: one multiplication a word.
+//! Fast hashing of field elements and small keys: one multiplication per word.
 //!
-//! No order depends on a hash. Keys come from the generator and not from a user, so nothing is gained by
-//! a hash that no one can foresee, which takes several times longer.
+//! No order depends on a hash. Keys come from the generator and not from a user, so a hash that
+//! resists attacks, which takes several times longer, is not needed.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
@@ -44,8 +44,8 @@ impl Hasher for FieldHasher {
     }
 }
 
-/// A map whose keys are hashed quickly.
+/// A map with fast hashing.
 pub type QuickMap<K, T> = HashMap<K, T, BuildHasherDefault<FieldHasher>>;
 
-/// A set of what is hashed quickly.
+/// A set with fast hashing.
 pub type QuickSet<T> = HashSet<T, BuildHasherDefault<FieldHasher>>;

@@ -1,9 +1,9 @@
-//! Exact constants: a float to compute with, the same number in the field to decide with, and its
-//! fraction where it has one.
+//! Exact constants: a float for values, its image in the field for decisions, and its fraction, if
+//! any.
 //!
-//! Folding constants must not leave a 6e-17 where a zero belongs. So every constant knows its
-//! image in [`field`](super::field): a difference whose image is zero is zero, and a product whose
-//! image is one is one.
+//! Constant folding must not produce 6e-17 instead of zero. So every constant has an image in
+//! [`field`](super::field): a difference whose image is zero is zero, and a product whose image is
+//! one is one.
 
 use super::field::{Element, mix};
 use super::ratio::Ratio;
@@ -53,7 +53,7 @@ impl Number {
         }
     }
 
-    /// A float of unknown origin; its image is random but the same for equal floats.
+    /// A float of unknown origin; its image is pseudo-random, but equal for equal floats.
     #[must_use]
     #[inline]
     pub fn float(value: f64) -> Self {
@@ -67,7 +67,7 @@ impl Number {
         }
     }
 
-    /// A float whose image is known, for instance the cosine of an exact angle.
+    /// A float with a known image, such as the cosine of an exact angle.
     #[must_use]
     #[inline]
     pub fn known(value: f64, image: Element) -> Self {
@@ -96,14 +96,14 @@ impl Number {
         self.value
     }
 
-    /// The element of the field.
+    /// The image in the field.
     #[must_use]
     #[inline]
     pub fn image(self) -> Element {
         self.image
     }
 
-    /// The fraction, where the constant is one.
+    /// The fraction, if the constant is rational.
     #[must_use]
     #[inline]
     pub fn as_ratio(self) -> Option<Ratio> {
@@ -136,13 +136,14 @@ impl Number {
             }
             return Some(root_of_ratio(ratio, self.value.sqrt()));
         }
-        // No relation to other roots is known, so the root is a number of its own.
+        // No relation to other roots is known, so the root gets an image of its own.
         Some(Self::float(self.value.sqrt()))
     }
 }
 
-/// The root of a fraction as the product of the roots of its primes, so that √2 √3 is √6. The roots
-/// of 2, 3 and 5 are those that the circle's own points imply (√3 = 2 cos 30 deg).
+/// The root of a fraction as the product of the roots of its primes, so that √2 √3 is √6.
+///
+/// The roots of 2, 3 and 5 are consistent with the points on the circle (√3 = 2 cos 30 deg).
 #[inline]
 fn root_of_ratio(ratio: Ratio, value: f64) -> Number {
     let square_free = match ratio.numerator().checked_mul(ratio.denominator()) {
@@ -193,7 +194,7 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * (1.0 + a.abs())
 }
 
-/// Combines two numbers: exactly as fractions if both are, else by value and image.
+/// Combines two numbers: as exact fractions if both are rational, otherwise by value and image.
 #[inline]
 fn combine(ratio: Option<Ratio>, value: f64, image: Element) -> Number {
     if let Some(ratio) = ratio {
@@ -237,7 +238,7 @@ impl Mul for Number {
 
 impl Div for Number {
     type Output = Self;
-    /// The quotient; the caller sees to it that the divisor is not zero.
+    /// The quotient; the caller ensures that the divisor is not zero.
     #[inline]
     fn div(self, other: Self) -> Self {
         let ratio = self

@@ -1,5 +1,5 @@
-//! Exact fractions with 128-bit parts. Every operation is checked: an overflow is `None`, and the
-//! caller goes on with a float.
+//! Exact fractions of 128-bit integers. Every operation is checked: overflow gives `None`, and the
+//! caller continues with a float.
 
 use std::cmp::Ordering;
 
@@ -13,7 +13,7 @@ pub struct Ratio {
 #[inline]
 fn gcd(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.unsigned_abs(), b.unsigned_abs());
-    // Nearly all parts have 64 bits, whose remainders are instructions and not calls.
+    // Nearly all numbers have 64 bits, whose remainders are instructions and not calls.
     if let (Ok(mut a), Ok(mut b)) = (u64::try_from(a), u64::try_from(b)) {
         while b != 0 {
             (a, b) = (b, a % b);
@@ -38,7 +38,7 @@ impl Ratio {
         denominator: 1,
     };
 
-    /// A fraction, reduced; `None` if the denominator is 0 or a part overflows.
+    /// A fraction in lowest terms; `None` if the denominator is 0 or a number overflows.
     #[must_use]
     pub fn new(numerator: i128, denominator: i128) -> Option<Self> {
         if denominator == 0 {
@@ -68,7 +68,7 @@ impl Ratio {
         }
     }
 
-    /// A decimal number such as `-0.41`, `15.52` or `1e-3`; `None` if it is none or too long.
+    /// A decimal number such as `-0.41`, `15.52` or `1e-3`; `None` for other texts and on overflow.
     #[must_use]
     #[inline]
     pub fn decimal(text: &str) -> Option<Self> {
@@ -109,7 +109,7 @@ impl Ratio {
         self.numerator == 0
     }
 
-    /// The nearest float (to within the rounding of two conversions and a division).
+    /// The nearest float, up to the roundings of two conversions and a division.
     #[must_use]
     #[inline]
     pub fn value(self) -> f64 {
@@ -161,7 +161,7 @@ impl Ratio {
         }
     }
 
-    /// Square root, if it is a fraction too.
+    /// Square root, if it is a fraction.
     #[must_use]
     pub fn square_root(self) -> Option<Self> {
         let root = |n: i128| {

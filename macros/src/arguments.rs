@@ -1,4 +1,4 @@
-//! What stands in the attribute's parentheses.
+//! Arguments of the attribute.
 
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::diagnostic::did_you_mean;
@@ -9,18 +9,18 @@ use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Ident, LitStr, Token, bracketed};
 
-/// What can be said behind the path.
+/// Keys that may follow the path.
 const KEYS: [&str; 6] = ["effort", "functions", "from", "columns", "float", "crate"];
 
-/// What the attribute says.
+/// Arguments of the attribute.
 pub(crate) struct Arguments {
     pub(crate) path: LitStr,
     pub(crate) effort: Option<Effort>,
-    /// None for all functions in all forms.
+    /// `None` for all functions in all forms.
     pub(crate) functions: Option<Choice>,
-    /// The numbers that the generated code computes with.
+    /// The floating-point type of generated code.
     pub(crate) float: Float,
-    /// Under which path the generated code finds the runtime crate, where it is said.
+    /// Path of the runtime crate in generated code, if given.
     pub(crate) runtime: Option<Runtime>,
 }
 
@@ -99,7 +99,7 @@ fn listed(names: &[&str], quote: char) -> String {
     }
 }
 
-/// One of the values that have these names.
+/// Parses one of the values of these names.
 fn one_of<T>(text: &LitStr, names: &[&str], named: impl Fn(&str) -> Option<T>) -> syn::Result<T> {
     let name = text.value();
     named(&name).ok_or_else(|| {
@@ -110,7 +110,7 @@ fn one_of<T>(text: &LitStr, names: &[&str], named: impl Fn(&str) -> Option<T>) -
     })
 }
 
-/// A list of texts, and its place.
+/// Parses a list of texts, with its location.
 fn texts(input: ParseStream<'_>, wanted: &str) -> syn::Result<(Vec<LitStr>, Span)> {
     let list;
     let bracket = bracketed!(list in input);
@@ -119,7 +119,7 @@ fn texts(input: ParseStream<'_>, wanted: &str) -> syn::Result<(Vec<LitStr>, Span
     Ok((texts.into_iter().collect(), bracket.span.join()))
 }
 
-/// Names of functions; each one that no function has is an error at its place.
+/// Parses names of functions; each unknown name is an error at its location.
 fn functions(input: ParseStream<'_>) -> syn::Result<Choice> {
     let wanted = "names of functions in quotes, `[\"control\", \"jacobian\"]`";
     let (names, place) = texts(input, wanted)?;
@@ -138,7 +138,7 @@ fn functions(input: ParseStream<'_>) -> syn::Result<Choice> {
     })
 }
 
-/// From what functions are evaluated.
+/// Parses the inputs from which functions are evaluated.
 fn sources(input: ParseStream<'_>) -> syn::Result<Vec<MotionInput>> {
     let (names, place) = texts(input, "a list, `[\"pose\", \"joints\"]`")?;
     if names.is_empty() {

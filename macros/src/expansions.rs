@@ -1,13 +1,13 @@
-//! What was generated, kept by what it was generated from.
+//! Cache of generated code, by its input.
 //!
-//! The compiler expands a crate anew whenever anything in it changes, and so does an editor at every key. A
-//! large robot takes the unoptimised generator a minute, reading its code from a file some milliseconds. The files
-//! stand where cargo lets this crate's build script write, which is in the user's target folder; whatever
-//! goes wrong with them, the generator does its work again, and nothing is said.
+//! The compiler expands a crate again after every change, and so does an editor at every key press.
+//! The unoptimised generator takes a minute for a large robot, reading the code from a file a few
+//! milliseconds. The files are in the folder of this crate's build script, inside the user's target
+//! folder. If anything fails, the generator runs again, without a message.
 //!
-//! A file begins with a line of its own and a checksum; the whole of what it was generated from follows, so
-//! that no two descriptions are ever taken for each other, and then the code. It is written under another name
-//! and renamed, as several compilers may write the same one.
+//! A file begins with a title line and a checksum. Then follow the complete input, so that no two
+//! descriptions are confused, and the code. It is written under another name and renamed, because
+//! several compilers may write it at once.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -17,10 +17,10 @@ use std::time::SystemTime;
 /// First line of a file.
 const TITLE: &str = "overact expansion 1";
 
-/// More files than these are not kept: a robot's older versions go first.
+/// Largest number of files; the oldest are removed first.
 const MOST: usize = 48;
 
-/// A file of more bytes is none of ours.
+/// Largest size of a valid file, in bytes.
 const LARGEST: u64 = 1 << 28;
 
 /// A robot's code.
@@ -28,23 +28,24 @@ const LARGEST: u64 = 1 << 28;
 pub(crate) struct Expansion {
     /// First line of the type's documentation.
     pub(crate) summary: String,
-    /// The lines behind it.
+    /// The remaining lines of documentation.
     pub(crate) documentation: Vec<String>,
-    /// The items behind the type.
+    /// The items after the type.
     pub(crate) items: String,
 }
 
-/// The folder of the files, where there is one: what a compiler of another machine has built, as shared
-/// caches of compilations hold it, points to nowhere.
+/// The folder of the files, if it exists.
+///
+/// The path in a binary built on another machine, as in shared compilation caches, may not exist.
 pub(crate) fn folder() -> Option<PathBuf> {
     let built = Path::new(env!("OUT_DIR"));
     let folder = built.join("expansions");
     let is_there = folder.is_dir() || (built.is_dir() && fs::create_dir(&folder).is_ok());
-    // Another compiler may have been faster.
+    // Another compiler may have created it first.
     (is_there || folder.is_dir()).then_some(folder)
 }
 
-/// The code that was generated from this, if it is there and whole.
+/// The code that was generated from this input, if the file exists and is intact.
 pub(crate) fn read(folder: &Path, key: &str) -> Option<Expansion> {
     let file = file(folder, key);
     let length = fs::metadata(&file).ok()?.len();
@@ -67,7 +68,7 @@ pub(crate) fn read(folder: &Path, key: &str) -> Option<Expansion> {
     })
 }
 
-/// Keeps code for the next time, if that can be done.
+/// Stores code for later expansions, if possible.
 pub(crate) fn keep(folder: &Path, key: &str, expansion: &Expansion) {
     let count = expansion.documentation.len().to_string();
     let head = [key, &count, &expansion.summary, &expansion.items];
@@ -89,7 +90,7 @@ pub(crate) fn keep(folder: &Path, key: &str, expansion: &Expansion) {
     leave_few(folder);
 }
 
-/// Removes the oldest files of too many.
+/// Removes the oldest files above the limit.
 fn leave_few(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -99,7 +100,7 @@ fn leave_few(folder: &Path) {
     files.sort();
     let too_many = files.len().saturating_sub(MOST);
     for (_, file) in files.into_iter().take(too_many) {
-        // Another compiler may have been faster.
+        // Another compiler may have removed it first.
         let _ = fs::remove_file(file);
     }
 }
@@ -114,7 +115,7 @@ fn hash(text: &str) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-/// Parts, each behind a line with its length in bytes.
+/// Parts, each after a line with its length in bytes.
 struct Parts<'a>(&'a str);
 
 impl<'a> Parts<'a> {
@@ -158,7 +159,7 @@ mod tests {
         keep(&folder, "key", &expansion("impl A {} // ⋯"));
         assert_eq!(read(&folder, "key"), Some(expansion("impl A {} // ⋯")));
         assert_eq!(read(&folder, "another"), None);
-        // Two keys of one hash would have one file.
+        // Two keys of equal hash would share a file.
         fs::rename(super::file(&folder, "key"), super::file(&folder, "another")).expect("moved");
         assert_eq!(read(&folder, "another"), None);
         keep(&folder, "another", &expansion("impl B {}"));

@@ -1,9 +1,10 @@
 //! The attribute macro `#[redundant_robot("robot.toml")]`.
 //!
-//! It reads the description, whose path is relative to the crate's manifest, and puts the generated
-//! items behind the struct. The description is named to the compiler as an input, so a changed file rebuilds
-//! the crate. Errors of the description are shown with their lines. What was generated is kept beside what is
-//! built of this crate (`expansions`), as the compiler asks for it whenever a line of the user's crate changes.
+//! It reads the description, whose path is relative to the crate's manifest, and adds the generated
+//! items after the struct. The compiler tracks the description as an input, so that a changed file
+//! rebuilds the crate. Errors of the description are shown with their lines. Generated code is
+//! cached in the target folder (`expansions`), because the compiler expands the attribute at every
+//! change of the user's crate.
 
 mod arguments;
 mod expansions;
@@ -18,21 +19,21 @@ use syn::{Attribute, Item, ItemStruct, Path, Token, parse_quote};
 
 /// Derives a robot's model from its description: `#[redundant_robot("robots/dualv.toml")] struct DualV;`
 ///
-/// Behind the path can stand, in any order:
+/// These keys may follow the path in any order:
 ///
 /// | key | what |
 /// |---|---|
-/// | `effort = "thorough"` | searches longer for fewer operations (`"none"`, `"quick"`); the description can say the same |
-/// | `functions = ["inverse_dynamics", "jacobian"]` | only these functions and what they call; the groups `control`, `identification` and `kinematics` stand for several |
-/// | `from = ["joints"]` | only functions that are evaluated from these (`"pose"`, `"joints"`, `"actuators"`); one that is named, as `inverse_dynamics`, is meant in each of these forms |
-/// | `columns = "base"` | models with the columns, and dynamics that take the values, of the base parameters alone, or of all `"standard"` ones |
-/// | `float = "f32"` | numbers of 32 bits, for controllers whose processors have no others; such a struct is no `overact::Model` |
+/// | `effort = "thorough"` | effort of the search for fewer operations (`"none"`, `"quick"`, `"thorough"`); the description may set it, too |
+/// | `functions = ["inverse_dynamics", "jacobian"]` | only these functions and those that they call; the groups `control`, `identification` and `kinematics` contain several |
+/// | `from = ["joints"]` | only functions of these inputs (`"pose"`, `"joints"`, `"actuators"`); a name such as `inverse_dynamics` selects each of these forms |
+/// | `columns = "base"` | only models with the columns of the base parameters (or of all, `"standard"`), and dynamics with their values as input |
+/// | `float = "f32"` | single precision, for controllers without double precision; such a struct is no `overact::Model` |
 /// | `crate = "::my::overact"` | the path under which the generated code finds this crate |
 ///
-/// The struct gets the constants and functions of the robot, the documentation and the derives of a generated
-/// file (`Debug`, `Clone`, `Copy`, `PartialEq`, `Eq`, `Default`; one that the struct asks for itself stands
-/// below this attribute), and implements `overact::Model`, unless something is left out that such a model is
-/// asked for: all of `identification` is enough.
+/// The struct gets the constants and functions of the robot, documentation, and the derives of a
+/// generated file (`Debug`, `Clone`, `Copy`, `PartialEq`, `Eq`, `Default`). Its own derives have to
+/// be below this attribute. It implements `overact::Model`, unless a function that such a model
+/// needs is left out; all of `identification` is sufficient.
 #[proc_macro_attribute]
 pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream {
     let (arguments, robot) = match read(attribute, item) {
@@ -42,7 +43,7 @@ pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream
     match expand(&arguments, &robot) {
         Ok(tokens) => tokens.into(),
         Err(error) => {
-            // The struct stays, so that its users add no errors of their own.
+            // The struct is kept, so that its uses cause no further errors.
             let error = error.into_compile_error();
             quote!(#robot #error).into()
         }
@@ -56,7 +57,7 @@ fn read(attribute: TokenStream, item: TokenStream) -> syn::Result<(Arguments, It
         let message =
             "expected the path of a robot's description: `#[redundant_robot(\"robot.toml\")]`";
         let is_path = is_empty || e.to_string().contains("string literal");
-        // Others may be several, which stay together.
+        // Errors of other kinds may be several, which stay together.
         match is_path {
             true => syn::Error::new(e.span(), message),
             false => e,
@@ -86,7 +87,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
     let source = Source::new(path.value(), text);
     let expansion = expansion(arguments, robot, &source)?;
     let items: proc_macro2::TokenStream = expansion.items.parse().map_err(|_| {
-        // Only what a generator of our own has written gets here.
+        // Reached only if the generator's own output does not parse.
         syn::Error::new(
             path.span(),
             "internal error of overact: the generated code is no Rust",
@@ -100,7 +101,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
     let derives = derives(&robot);
     let attributes: Vec<Attribute> = lines.chain(derives).collect();
     robot.attrs.extend(attributes);
-    // The compiler watches files that are included.
+    // The compiler tracks included files.
     let watched = file.to_string_lossy().into_owned();
     Ok(quote! {
         #robot
@@ -109,7 +110,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
     })
 }
 
-/// The generated code, which may be there already.
+/// The generated code, from the cache if possible.
 fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn::Result<Expansion> {
     let Arguments {
         effort,
@@ -157,12 +158,12 @@ fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn:
     Ok(expansion)
 }
 
-/// The derives of a generated file that the struct does not ask for itself.
+/// The derives of a generated file that the struct does not have itself.
 fn derives(robot: &ItemStruct) -> Option<Attribute> {
     let mut own: Vec<String> = Vec::new();
     for attribute in robot.attrs.iter().filter(|a| a.path().is_ident("derive")) {
         let parser = Punctuated::<Path, Token![,]>::parse_terminated;
-        // What is no list of paths is told by the compiler.
+        // The compiler reports attributes that are not lists of paths.
         for path in attribute.parse_args_with(parser).unwrap_or_default() {
             own.extend(path.segments.last().map(|last| last.ident.to_string()));
         }

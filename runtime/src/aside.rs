@@ -1,12 +1,12 @@
-//! Poses of platforms that move aside: some coordinates are independent, the others follow from the legs'
-//! closures, on which a pose has to stay.
+//! Poses of platforms with parasitic motion: some coordinates are independent, the legs' closures
+//! give the others.
 
 use crate::Error;
 use crate::float::Float;
 use crate::forward::displace_quaternion;
 use crate::inverse::System;
 
-/// Components of a free body's velocity.
+/// Number of velocity components of a free body.
 const SIX: usize = 6;
 /// Numbers in a pose.
 const POSE: usize = 7;
@@ -15,12 +15,16 @@ const STEPS: usize = 40;
 /// Largest step (m, rad): longer ones may lead to another assembly mode.
 const LONGEST_STEP: f64 = 0.5;
 
-/// Moves a pose by one displacement: its independent components, whose numbers among the six are given, are
-/// `step`, and the others are found by Newton's method so that the legs close. `evaluate` writes by how much a
-/// pose misses what the legs allow (6 - r numbers), and the derivative of that along the six components of the
-/// platform's velocity (row-major). Where the legs do not close, the pose stays on the way: functions refuse it.
+/// Displaces a pose along its independent coordinates, and corrects the others until the legs
+/// close.
 ///
-/// All six are one rotation vector and one translation: turns one after the other would turn each other.
+/// `step` are the independent components, whose indices among the six are given. Newton's method
+/// finds the others. `evaluate` writes the closure errors of a pose (6 - r numbers), and their
+/// derivatives with respect to the six components of the platform's velocity (row-major). If the
+/// iteration does not converge, the pose is not closed and functions reject it.
+///
+/// The six components are one rotation vector and one translation, because successive rotations
+/// would change each other's axes.
 pub fn displace<T: Float>(
     pose: &mut [T],
     step: &[T],
@@ -83,7 +87,7 @@ pub fn displace<T: Float>(
 mod tests {
     use super::displace;
 
-    /// A point on the sphere of radius 1 above x and y, which does not turn.
+    /// A point on the unit sphere above x and y, which does not rotate.
     #[test]
     fn the_dependent_coordinates_follow() {
         let mut pose = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0];

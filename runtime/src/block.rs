@@ -1,18 +1,18 @@
-//! Blocks of samples for compiled robots: generated functions take one state; [`crate::Model`] hands
-//! over slices of many.
+//! Blocks of samples for compiled robots: generated functions take one state, [`crate::Model`]
+//! passes slices of many.
 
 use crate::float::Float;
 use crate::{Error, Function, SampleError, Sizes};
 
 /// An output as a flat slice, row-major.
 pub trait Flat<T> {
-    /// How many numbers there are.
+    /// Number of elements.
     const LEN: usize;
 
-    /// The numbers.
+    /// The elements.
     fn flat(&self) -> &[T];
 
-    /// The first numbers of some as an output, if there are enough.
+    /// The first elements of a slice as an output, if there are enough.
     fn place(numbers: &mut [T]) -> Option<&mut Self>;
 }
 
@@ -58,11 +58,12 @@ pub fn write<T: Float>(value: &impl Flat<T>, out: &mut [T]) {
     }
 }
 
-/// How many samples a call of [`crate::Model::evaluate`] means: as many as the output has room for. Each
-/// input must hold a row of numbers for every sample, or one row that serves all.
+/// Number of samples in a call of [`crate::Model::evaluate`], from the length of the output.
+///
+/// Each input has to contain one row per sample, or one row for all.
 ///
 /// # Errors
-/// [`Error::Inputs`] or [`Error::Length`], of sample 0.
+/// [`Error::Inputs`] or [`Error::Length`], for sample 0.
 pub fn samples(
     function: Function,
     sizes: &Sizes,
@@ -94,14 +95,14 @@ pub fn samples(
     Ok(samples)
 }
 
-/// Inputs and output of a call of [`crate::Model::evaluate`], of lengths that fit the function.
+/// Inputs and output of a call of [`crate::Model::evaluate`], with valid lengths.
 #[derive(Debug)]
 pub struct Block<'a> {
     inputs: &'a [&'a [f64]],
     output: &'a mut [f64],
 }
 
-/// The inputs at a sample.
+/// The inputs of one sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Inputs<'a> {
     inputs: &'a [&'a [f64]],
@@ -109,7 +110,7 @@ pub struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// The row of an input; an input of a single row serves all samples.
+    /// The row of an input; an input with a single row is shared by all samples.
     ///
     /// # Errors
     /// [`Error::Length`].
@@ -125,7 +126,7 @@ impl<'a> Inputs<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// A call of a function of a robot of these sizes.
+    /// A call of a function for a robot of these sizes.
     ///
     /// # Errors
     /// See [`samples`].
@@ -148,7 +149,7 @@ impl<'a> Block<'a> {
         function: impl Fn(Inputs<'a>) -> Result<O, Error>,
     ) -> Result<(), SampleError> {
         let inputs = self.inputs;
-        // An output without numbers has no samples.
+        // An output without elements has no samples.
         for (sample, out) in self.output.chunks_mut(O::LEN.max(1)).enumerate() {
             let value = function(Inputs { inputs, sample });
             let value = value.map_err(|error| SampleError { sample, error })?;
@@ -157,7 +158,7 @@ impl<'a> Block<'a> {
         Ok(())
     }
 
-    /// Has a generated function write sample by sample.
+    /// Calls a generated function that writes its output, sample by sample.
     ///
     /// # Errors
     /// The first sample at which the function fails.

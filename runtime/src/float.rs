@@ -1,4 +1,4 @@
-//! The numbers that robots are computed in.
+//! Floating-point types of robots.
 
 use crate::math::{self, single};
 use core::fmt::Debug;
@@ -7,14 +7,15 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use overact_core::{Limits, limits};
 
 mod sealed {
-    /// No other types are numbers of robots.
+    /// Restricts the trait to the types of this crate.
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
 }
 
-/// `f64`, in which robots are identified and simulated, or `f32`, in which small controllers compute: what iterations
-/// and checks of generated code need of either.
+/// Floating-point type of generated code, with the operations that iterations and checks need.
+///
+/// `f64` is used for identification and simulation, `f32` for small controllers.
 pub trait Float:
     sealed::Sealed
     + Copy
@@ -32,32 +33,32 @@ pub trait Float:
     + Neg<Output = Self>
     + Sum<Self>
 {
-    /// From where on numbers count as zero.
+    /// Numerical limits of the type.
     const LIMITS: Limits;
     /// Zero.
     const ZERO: Self;
     /// Infinity.
     const INFINITY: Self;
-    /// No number.
+    /// NaN.
     const NAN: Self;
 
-    /// The number nearest to this one.
+    /// The nearest number of the type.
     fn of(value: f64) -> Self;
     /// The magnitude.
     fn abs(self) -> Self;
-    /// The larger one of two numbers, or the one that is a number.
+    /// The larger of two numbers; ignores NaN.
     fn max(self, other: Self) -> Self;
-    /// The smaller one of two numbers, or the one that is a number.
+    /// The smaller of two numbers; ignores NaN.
     fn min(self, other: Self) -> Self;
-    /// Whether it is neither infinite nor no number.
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// Its bits, zero for zero alone.
+    /// Its bits, which are zero for zero only.
     fn bits(self) -> u64;
     /// Square root; NaN of a negative number.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
-    /// The angle nearest to zero that differs from this one by whole turns.
+    /// The angle wrapped to the one nearest to zero.
     fn wrap_angle(self) -> Self;
 }
 

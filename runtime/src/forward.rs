@@ -1,11 +1,11 @@
-//! Forward kinematics of a parallel robot from all its actuators, redundant ones included.
+//! Forward kinematics of a parallel robot from all its actuators, including redundant ones.
 //!
 //! The pose minimises |q_measured - q(x)|², where q(x) is the inverse kinematics. Gauss-Newton with
-//! the Jacobian J_p^inv converges in two or three steps when it starts from the previous sample; the
-//! redundant actuators average the noise of the others, and starting near keeps the assembly mode.
+//! the Jacobian J_p^inv converges in two or three steps from the previous sample. Redundant
+//! actuators average the noise, and a close start keeps the assembly mode.
 //!
-//! All of it may be inlined: sizes are constants in generated code, and loops of three or four turns cost
-//! more than what they do where the compiler does not know them.
+//! All functions may be inlined: sizes are constants in generated code, and without them the
+//! overhead of loops with three or four iterations exceeds their work.
 
 use crate::{ActuatorGroup, Error, float::Float, guard};
 use overact_core::limits::DOUBLE;
@@ -13,21 +13,23 @@ use overact_core::limits::DOUBLE;
 /// Largest number of Gauss-Newton steps.
 pub const STEPS: usize = 20;
 
-/// The steps end when the largest one falls below this (m, rad), or the next one will; in numbers of 64 bits.
+/// Steps end when the largest one, or a bound of the next one, falls below this (m, rad), in double
+/// precision.
 pub const TOLERANCE: f64 = DOUBLE.step;
 
-/// Steps that are longer than this (m, rad) come from a start that is far away, and say nothing of the next one.
+/// Steps longer than this (m, rad) come from a distant start, and do not predict the next one.
 const LONG_STEP: f64 = 1.0;
 
-/// A pose in closed form that is not farther than this from the start (m, rad) is where the steps start.
+/// Largest distance from the start (m, rad) at which a pose in closed form becomes the start of the
+/// steps.
 const NEAR: f64 = 0.01;
 
-/// The measured actuators, and which of them are angles.
+/// Measured positions of the actuators, and whether each is an angle.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured<'a, T = f64> {
     /// Positions of the n actuators (m, rad).
     pub positions: &'a [T],
-    /// Whether each is an angle, whose differences are taken modulo a turn.
+    /// Whether each is an angle, whose differences are modulo a turn.
     pub is_revolute: &'a [bool],
 }
 
@@ -44,13 +46,14 @@ pub struct Workspace<'a, T = f64> {
     pub step: &'a mut [T],
 }
 
-/// Finds the pose of least squares from the start in `pose`. `evaluate` writes q(x) and J_p^inv(x)
-/// (n x r, row-major) of a pose; `displace` moves a pose along the twist coordinates. All numbers are
-/// finite: the caller has seen to that.
+/// Finds the least-squares pose from the start in `pose` by Gauss-Newton.
 ///
-/// The remaining residual of a redundant robot is not zero when its encoders are noisy, so
-/// convergence is judged by the step. Steps shrink at least as fast as a geometric series, so the last two
-/// bound the next one, and none is done only to see that it is small.
+/// `evaluate` writes q(x) and J_p^inv(x) (n × r, row-major) of a pose; `displace` moves a pose
+/// along the twist coordinates. All numbers have to be finite.
+///
+/// The residual of a redundant robot with encoder noise is not zero, so convergence is judged by
+/// the step. Steps decrease at least geometrically, so the last two bound the next one, which is
+/// not computed only to check its size.
 ///
 /// # Errors
 /// [`Error::NoConvergence`], [`Error::SingularPlatform`], or what `evaluate` reports.
@@ -84,10 +87,11 @@ pub fn gauss_newton<T: Float>(
     }
 }
 
-/// Takes steps as [`gauss_newton`] does, which `find` writes at once: generated code that has positions and
-/// Jacobian in one and solves the system without a loop. Whether they have led to a pose; if not, which may be for
-/// a pivot that vanishes where the Jacobian is regular, or for steps that ran away until rounding ended them,
-/// [`gauss_newton`] is asked from the start.
+/// Takes Gauss-Newton steps that `find` computes in one call; returns whether they converged.
+///
+/// It is used by generated code that has positions and Jacobian in one function and solves the
+/// system without a loop. It fails if a pivot vanishes although the Jacobian is regular, or if
+/// steps diverge. The caller then continues with [`gauss_newton`] from the start.
 #[inline]
 pub fn steps<T: Float>(
     pose: &mut [T],
@@ -99,7 +103,7 @@ pub fn steps<T: Float>(
     ended && pose.iter().all(|x| x.abs() <= T::of(T::LIMITS.farthest))
 }
 
-/// Takes steps until the next one would be too small. Whether there is such a step.
+/// Takes steps until the next one would be too small; returns whether this happens.
 #[inline]
 fn iterate<T: Float>(
     pose: &mut [T],
@@ -110,35 +114,37 @@ fn iterate<T: Float>(
     let mut before = T::ZERO;
     for _ in 0..STEPS {
         match find(pose, step) {
-            // A pose that has run away is none that was given.
+            // A diverged pose is not an input of the user.
             Err(Error::NotFinite { .. } | Error::OutOfRange { .. }) => break,
             found => found?,
         }
         displace(pose, step);
-        // Of a number and none that is one the maximum is the number; their sum is none.
+        // `max` ignores NaN, but a sum does not.
         let total: T = step.iter().map(|s| s.abs()).sum();
         if !total.is_finite() {
             break;
         }
         let largest = step.iter().fold(T::ZERO, |m, s| m.max(s.abs()));
-        // The next step is largest²/before at most; a tenth of what is tolerated leaves room for those behind it.
+        // The next step is at most largest²/before; a tenth of the tolerance leaves room for later
+        // ones.
         let tolerated = T::of(T::LIMITS.step);
         if largest < tolerated || largest * largest < T::of(0.1) * tolerated * before {
             return Ok(true);
         }
-        // The step behind a longer one is no sign of how fast steps shrink.
+        // The step after a long one does not show how fast steps decrease.
         before = largest.min(T::of(LONG_STEP));
     }
     Ok(false)
 }
 
-/// Fits a pose to redundant actuators where a closed form knows it from some of them. Steps that start from the
-/// closed form have only the noise of the encoders to go, but its assembly mode is that of the home
-/// configuration: it is taken where it is near `start`, as from one sample to the next, and otherwise only where
+/// Fits a pose to redundant actuators, starting from a closed form that uses some of them.
+///
+/// From the closed form, steps only have to correct encoder noise, but its assembly mode is that of
+/// the home configuration. So it is used if it is near `start`, as in successive samples, or if
 /// `fit` fails from `start`.
 ///
 /// # Errors
-/// What `fit` reports.
+/// The error of `fit`.
 #[inline]
 pub fn from_closed_form<T: Float, P: AsRef<[T]>>(
     closed: Option<P>,
@@ -156,7 +162,8 @@ pub fn from_closed_form<T: Float, P: AsRef<[T]>>(
     fit(first).or_else(|_| fit(second))
 }
 
-/// Adds the upper triangle of Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
+/// Adds the upper triangle of JᵀJ to `normal` and Jᵀ Δq to `step`, with J = J_p^inv; returns the
+/// largest difference.
 #[inline]
 fn accumulate<T: Float>(
     measured: Measured<'_, T>,
@@ -186,8 +193,9 @@ fn accumulate<T: Float>(
     residual
 }
 
-/// Solves S x = y in place for a symmetric positive definite S (row-major, overwritten) by L D Lᵀ. Of S only the
-/// upper triangle is read.
+/// Solves S x = y in place by L D Lᵀ, for a symmetric positive definite S (row-major, overwritten).
+///
+/// Only the upper triangle of S is read.
 ///
 /// # Errors
 /// [`Error::SingularPlatform`] when a pivot vanishes, [`Error::Length`] for a matrix that is not square.
@@ -201,8 +209,8 @@ pub fn solve_positive_definite<T: Float>(matrix: &mut [T], vector: &mut [T]) -> 
         });
     }
     eliminate(matrix, vector)?;
-    // From the last row upwards; in the vector everything behind the row's own place is solved. Rows and
-    // places are taken by iterators, which leave no check of bounds behind.
+    // From the last row upwards; later elements of the vector are already solved. Iterators avoid
+    // bounds checks.
     for (k, row) in matrix.chunks_exact(n.max(1)).enumerate().rev() {
         let mut known = row.iter().zip(vector.iter_mut()).skip(k);
         if let Some((pivot, value)) = known.next() {
@@ -213,8 +221,10 @@ pub fn solve_positive_definite<T: Float>(matrix: &mut [T], vector: &mut [T]) -> 
     Ok(())
 }
 
-/// Brings S to upper triangular form, and the right-hand side with it. What is left of S stays symmetric, so an
-/// entry below the pivot is the one beside it.
+/// Reduces S to upper triangular form, together with the right-hand side.
+///
+/// The remaining submatrix stays symmetric, so an entry below the pivot equals its counterpart in
+/// the pivot row.
 #[inline]
 fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> {
     let n = vector.len().max(1);
@@ -252,7 +262,7 @@ fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> 
     Ok(())
 }
 
-/// Moves a pose whose coordinates are its twist coordinates' integrals: x + step.
+/// Displaces a pose whose coordinates are integrals of its twist coordinates: x + step.
 #[inline]
 pub fn displace<T: Float>(pose: &mut [T], step: &[T]) {
     for (coordinate, step) in pose.iter_mut().zip(step) {
@@ -260,8 +270,10 @@ pub fn displace<T: Float>(pose: &mut [T], step: &[T]) {
     }
 }
 
-/// Moves a pose that ends with a unit quaternion (w, x, y, z): the last three numbers of `step` are a
-/// rotation vector in the base frame, by whose exponential the quaternion is multiplied from the left.
+/// Displaces a pose that ends with a unit quaternion (w, x, y, z).
+///
+/// The last three numbers of `step` are a rotation vector in the base frame. The quaternion is
+/// multiplied by its exponential from the left.
 pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
     let Some((linear, turn)) = step.split_last_chunk::<3>() else {
         return;
@@ -279,15 +291,18 @@ pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
         a * *y - b * *z + c * *w + d * *x,
         a * *z + b * *y - c * *x + d * *w,
     );
-    // No number is left without one: a quaternion of zeros is refused by whatever takes the pose.
+    // Without a valid quaternion the pose stays; functions of the pose reject a zero quaternion.
     let _ = guard::normalise(pose, "pose");
 }
 
-/// Squares of angles (rad²) up to which four terms of a series have all digits: the first one left out is 2 · 10⁻¹⁷.
+/// Squares of angles (rad²) up to which four terms of the series are exact: the next one is
+/// 2 · 10⁻¹⁷.
 const SMALL_TURN: f64 = 1.0 / 256.0;
 
-/// sin(a/2)/a and cos(a/2) of an angle a (rad) whose square is known. Steps of an iteration turn by little, and a series
-/// in a² waits for no root and no quotient.
+/// sin(a/2)/a and cos(a/2) of an angle a (rad) from its square.
+///
+/// Steps of an iteration rotate by small angles, and a series in a² needs neither root nor
+/// quotient.
 #[inline]
 fn half_turn<T: Float>(square: T) -> (T, T) {
     if square < T::of(SMALL_TURN) {
@@ -402,7 +417,7 @@ mod tests {
         }
     }
 
-    /// A fit that tells from where it starts.
+    /// A fit that records where it starts.
     fn tried(closed: Option<[f64; 2]>, start: [f64; 2], fails: bool) -> Vec<[f64; 2]> {
         let mut tried = Vec::new();
         let fit = |pose| {

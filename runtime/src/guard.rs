@@ -1,23 +1,27 @@
-//! What generated functions check: at their boundary that all inputs are finite and a pose's quaternion
-//! has a direction, and on the way that a configuration can be reached and is regular. Each is an error
-//! that names the input or the leg, not a NaN.
+//! Checks in generated functions.
+//!
+//! At the start, all inputs have to be finite and a pose's quaternion nonzero. Later, the
+//! configuration has to be reachable and regular. Each failure is an error that names the input or
+//! the leg, not a NaN.
 
 use crate::float::Float;
 use crate::{ActuatorGroup, Error};
 
-/// An input with the name that errors call it by.
+/// An input with its name for errors.
 pub type Named<'a, T> = (&'static str, &'a [T]);
 
-/// An input with the name that errors call it by, and the largest magnitude that its numbers may have.
+/// An input with its name for errors and the largest magnitude of its numbers.
 pub type Bounded<'a, T> = (&'static str, &'a [T], T);
 
-/// All numbers of all inputs must be finite and in range, so that nothing that is computed from them overflows.
+/// Checks that all numbers of all inputs are finite and in range, so that values computed from them
+/// do not overflow.
 ///
 /// # Errors
-/// [`Error::NotFinite`] or [`Error::OutOfRange`] of the first input that has another one.
+/// [`Error::NotFinite`] or [`Error::OutOfRange`] for the first invalid input.
 #[inline(always)]
 pub fn within<T: Float>(inputs: &[Bounded<'_, T>]) -> Result<(), Error> {
-    // One comparison for all: there is nothing to gain from an early end, and without one the loops become vectors.
+    // One comparison for all: an early exit would save nothing, and without it the loops are
+    // vectorised.
     let mut good = true;
     for (_, values, most) in inputs {
         for value in *values {
@@ -27,7 +31,7 @@ pub fn within<T: Float>(inputs: &[Bounded<'_, T>]) -> Result<(), Error> {
     if good {
         return Ok(());
     }
-    // The inputs are handed out one by one, as in `finite`.
+    // The inputs are passed one by one, as in `finite`.
     let mut error = Error::Overflow;
     for (input, values, most) in inputs.iter().rev() {
         error = out_of_range(input, values, *most).unwrap_or(error);
@@ -35,7 +39,7 @@ pub fn within<T: Float>(inputs: &[Bounded<'_, T>]) -> Result<(), Error> {
     Err(error)
 }
 
-/// What is wrong with an input, out of the way of what is usual.
+/// The error of an input, kept out of line.
 #[cold]
 #[inline(never)]
 fn out_of_range<T: Float>(input: &'static str, values: &[T], most: T) -> Option<Error> {
@@ -46,14 +50,14 @@ fn out_of_range<T: Float>(input: &'static str, values: &[T], most: T) -> Option<
     is_large.then_some(Error::OutOfRange { input })
 }
 
-/// All numbers of all inputs must be finite.
+/// Checks that all numbers of all inputs are finite.
 ///
 /// # Errors
-/// [`Error::NotFinite`] of the first input that has another one.
+/// [`Error::NotFinite`] for the first invalid input.
 #[inline(always)]
 pub fn finite<T: Float>(inputs: &[Named<'_, T>]) -> Result<(), Error> {
-    // x - x is zero but for NaN and infinities. One comparison for all: there is nothing to gain from an
-    // early end, and without one the loops become vectors.
+    // x - x is zero except for NaN and infinities. One comparison for all: an early exit would save
+    // nothing, and without it the loops are vectorised.
     let mut bits = 0;
     for (_, values) in inputs {
         for value in *values {
@@ -65,8 +69,8 @@ pub fn finite<T: Float>(inputs: &[Named<'_, T>]) -> Result<(), Error> {
     if bits == 0 {
         return Ok(());
     }
-    // The inputs are handed out one by one: a reference to all of them would keep a table of them on the
-    // stack, which is then filled at every call.
+    // The inputs are passed one by one: a reference to all of them would keep a table on the stack,
+    // which every call would fill.
     let mut input = "";
     for (name, values) in inputs.iter().rev() {
         if has_other(values) {
@@ -76,17 +80,17 @@ pub fn finite<T: Float>(inputs: &[Named<'_, T>]) -> Result<(), Error> {
     Err(Error::NotFinite { input })
 }
 
-/// Whether an input has a number that is not finite, out of the way of what is usual.
+/// Whether an input has a number that is not finite, kept out of line.
 #[cold]
 #[inline(never)]
 fn has_other<T: Float>(values: &[T]) -> bool {
     values.iter().any(|value| !value.is_finite())
 }
 
-/// A pose that ends with a quaternion (w, x, y, z), with the quaternion scaled to length 1.
+/// A pose that ends with a quaternion (w, x, y, z), with the quaternion normalised.
 ///
 /// # Errors
-/// [`Error::ZeroQuaternion`]. The numbers must be finite.
+/// [`Error::ZeroQuaternion`]. The numbers have to be finite.
 #[inline(always)]
 pub fn unit_quaternion<T: Float, const N: usize>(
     pose: &[T; N],
@@ -97,7 +101,7 @@ pub fn unit_quaternion<T: Float, const N: usize>(
     Ok(unit)
 }
 
-/// Scales the quaternion at the end of a pose to length 1.
+/// Normalises the quaternion at the end of a pose.
 ///
 /// # Errors
 /// [`Error::ZeroQuaternion`].
@@ -108,7 +112,7 @@ pub fn normalise<T: Float>(pose: &mut [T], input: &'static str) -> Result<(), Er
     };
     let [w, x, y, z] = *quaternion;
     let square = w * w + x * x + y * y + z * z;
-    // Mostly the length is 1 but for rounding; 1/√s is (3 - s)/2 then, to the last digit.
+    // Usually the length is 1 up to rounding; then 1/√s is (3 - s)/2 to the last digit.
     if (square - T::of(1.0)).abs() > T::of(T::LIMITS.quaternion) {
         return normalise_others(quaternion, input);
     }
@@ -117,8 +121,9 @@ pub fn normalise<T: Float>(pose: &mut [T], input: &'static str) -> Result<(), Er
     Ok(())
 }
 
-/// Quaternions of any length; the largest number is scaled to 1 first, so that squares are neither too
-/// small nor too large for a number.
+/// Normalises quaternions of any length.
+///
+/// The largest number is scaled to 1 first, so that squares neither overflow nor underflow.
 #[cold]
 #[inline(never)]
 fn normalise_others<T: Float>(quaternion: &mut [T; 4], input: &'static str) -> Result<(), Error> {
@@ -132,8 +137,10 @@ fn normalise_others<T: Float>(quaternion: &mut [T; 4], input: &'static str) -> R
     Ok(())
 }
 
-/// The radicand of a leg's inverse kinematics must be neither negative nor lost in rounding; `home` is its value at
-/// home, zero if only the sign matters.
+/// Checks that the radicand of a leg's inverse kinematics is neither negative nor dominated by
+/// rounding.
+///
+/// `home` is its value at home; zero if only the sign matters.
 ///
 /// # Errors
 /// [`Error::OutOfReach`], also for NaN; [`Error::SingularLeg`] near the limit of the leg's reach.
@@ -146,7 +153,7 @@ pub fn reach<T: Float>(radicand: T, home: T, leg: &'static str) -> Result<(), Er
     }
 }
 
-/// What is wrong with a radicand. A leg's determinant goes with its root.
+/// The error of a radicand. A leg's determinant is proportional to its root.
 #[cold]
 fn not_reached<T: Float>(radicand: T, home: T, leg: &'static str) -> Error {
     if radicand >= T::ZERO {
@@ -157,7 +164,7 @@ fn not_reached<T: Float>(radicand: T, home: T, leg: &'static str) -> Error {
     }
 }
 
-/// A value must not be larger than `most`, so that nothing that is computed from it overflows.
+/// Checks that a value is at most `most`, so that values computed from it do not overflow.
 ///
 /// # Errors
 /// [`Error::Overflow`]; also for NaN.
@@ -170,7 +177,7 @@ pub fn size<T: Float>(value: T, most: T) -> Result<(), Error> {
     }
 }
 
-/// A leg's determinant must not vanish; `home` is its magnitude at home.
+/// Checks that a leg's determinant does not vanish; `home` is its magnitude at home.
 ///
 /// # Errors
 /// [`Error::SingularLeg`]; also for NaN.
@@ -186,7 +193,7 @@ pub fn leg<T: Float>(determinant: T, home: T, leg: &'static str) -> Result<(), E
     }
 }
 
-/// The determinant of the (kept) actuators' Jacobian must not vanish.
+/// Checks that the determinant of the (kept) actuators' Jacobian does not vanish.
 ///
 /// # Errors
 /// [`Error::SingularPlatform`]; also for NaN.
@@ -202,7 +209,7 @@ pub fn platform<T: Float>(determinant: T, home: T, actuators: ActuatorGroup) -> 
     }
 }
 
-/// What a pose misses of what a leg allows must be small: at most `within` (m, rad).
+/// Checks that the closure error of a pose is at most `within` (m, rad).
 ///
 /// # Errors
 /// [`Error::NotClosed`]; also for NaN.
@@ -216,8 +223,9 @@ pub fn closed<T: Float>(gap: T, within: T, leg: &'static str) -> Result<(), Erro
     }
 }
 
-/// The determinant by which the independent coordinates of a platform that moves aside give the others must
-/// not vanish; `home` is its magnitude at home.
+/// Checks the determinant of the dependent coordinates of a platform with parasitic motion.
+///
+/// It must not vanish; `home` is its magnitude at home.
 ///
 /// # Errors
 /// [`Error::SingularCoordinates`]; also for NaN.
@@ -231,7 +239,7 @@ pub fn coordinates<T: Float>(determinant: T, home: T) -> Result<(), Error> {
     }
 }
 
-/// A pivot of the mass matrix must be positive.
+/// Checks that a pivot of the mass matrix is positive.
 ///
 /// # Errors
 /// [`Error::MassMatrix`]; also for NaN.

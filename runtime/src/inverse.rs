@@ -1,12 +1,12 @@
-//! Inverse kinematics by Newton's method, for legs that no closed form solves.
+//! Inverse kinematics by Newton's method, for legs without closed form.
 //!
-//! Each leg's closure error e(x, q) is driven to zero with the generated leg Jacobian J_k, eq. (9):
-//! J_k Δq = e. The iteration starts from the home configuration; when a leg does not follow, or changes
-//! its working mode (the sign of its determinant), the way from the home pose is walked in more and
-//! smaller steps.
+//! Each leg's closure error e(x, q) is reduced to zero with the generated leg Jacobian J_k, eq.
+//! (9): J_k Δq = e. The iteration starts from the home configuration. If a leg does not converge,
+//! or changes its working mode (the sign of its determinant), the path from the home pose is
+//! divided into more and smaller steps.
 //!
-//! Nothing here can panic, whatever the lengths of the slices are: entries are read and written with `get`, and
-//! one that isn't there is no number, which ends the iteration with an error.
+//! No function can panic, whatever the lengths of the slices are. Entries are accessed with `get`;
+//! a missing one is NaN, which ends the iteration with an error.
 
 use crate::{Error, float::Float};
 use core::ops::Range;
@@ -16,7 +16,7 @@ use core::ops::Range;
 pub struct Legs<'a, T = f64> {
     /// Names.
     pub names: &'a [&'static str],
-    /// Joints of each leg.
+    /// Number of joints of each leg.
     pub joints: &'a [usize],
     /// Home pose.
     pub home_pose: &'a [T],
@@ -50,15 +50,16 @@ pub struct Workspace<'a, T = f64> {
 }
 
 const ITERATIONS: usize = 30;
-/// Steps of a joint (m, rad) are cut to this.
+/// Largest step of a joint (m, rad).
 const LONGEST_STEP: f64 = 0.5;
 
-/// Finds the joint positions of a pose in the working mode of the home configuration. `evaluate` writes
-/// the closure error (n_t) and J_k (n_t x n_t, row-major) of a pose and joint positions. The pose is finite:
-/// the caller has seen to that.
+/// Finds the joint positions of a pose in the working mode of the home configuration.
+///
+/// `evaluate` writes the closure error (n_t) and J_k (n_t × n_t, row-major) of a pose and joint
+/// positions. The pose has to be finite.
 ///
 /// # Errors
-/// [`Error::OutOfReach`] or [`Error::SingularLeg`] of the leg that does not follow.
+/// [`Error::OutOfReach`] or [`Error::SingularLeg`] for the leg that does not converge.
 pub fn solve<T: Float>(
     legs: Legs<'_, T>,
     pose: &[T],
@@ -96,7 +97,7 @@ pub fn solve<T: Float>(
     result
 }
 
-/// The pose a part of the way from home.
+/// An intermediate pose between home and the target.
 fn between<T: Float>(legs: &Legs<'_, T>, pose: &[T], part: T, way: &mut [T]) {
     for ((w, h), p) in way.iter_mut().zip(legs.home_pose).zip(pose) {
         *w = match part >= T::of(1.0) {
@@ -149,7 +150,7 @@ fn newton<T: Float>(
     closed(legs, error)
 }
 
-/// Whether all legs are closed; the leg whose error is the largest is the one that cannot follow.
+/// Checks that all legs are closed; the error names the leg with the largest closure error.
 fn closed<T: Float>(legs: &Legs<'_, T>, error: &[T]) -> Result<(), Error> {
     let sizes = legs
         .ranges()
@@ -161,7 +162,7 @@ fn closed<T: Float>(legs: &Legs<'_, T>, error: &[T]) -> Result<(), Error> {
     }
 }
 
-/// Whether every leg's determinant has the sign that it has at home.
+/// Whether every leg's determinant has its sign at home.
 fn same_mode<T: Float>(
     legs: &Legs<'_, T>,
     pose: &[T],
@@ -200,7 +201,7 @@ fn largest_of<T: Float>(numbers: &[T]) -> T {
         .fold(T::ZERO, |largest, x| largest.max(x.abs()))
 }
 
-/// A square matrix, row-major, and a right-hand side; entries outside of them are no numbers.
+/// A square matrix, row-major, and a right-hand side; entries outside of them are NaN.
 pub(crate) struct System<'a, T> {
     size: usize,
     matrix: &'a mut [T],
@@ -237,8 +238,10 @@ impl<'a, T: Float> System<'a, T> {
         }
     }
 
-    /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting; returns the
-    /// sign of the block's determinant and the ratio of its largest and smallest pivots.
+    /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting.
+    ///
+    /// Returns the sign of the block's determinant and the ratio of its largest to its smallest
+    /// pivot.
     pub(crate) fn eliminate(&mut self, range: Range<usize>) -> (T, T) {
         let mut sign = T::of(1.0);
         let (mut largest, mut smallest) = (T::ZERO, T::INFINITY);
@@ -272,7 +275,8 @@ impl<'a, T: Float> System<'a, T> {
         (sign, largest / smallest)
     }
 
-    /// Swaps row k of a block with the one below whose entry in column k is the largest; whether there is one.
+    /// Swaps row k of a block with the later one that has the largest entry in column k; returns
+    /// whether one exists.
     fn bring_pivot_up(&mut self, k: usize, range: &Range<usize>) -> bool {
         let mut pivot_row = k;
         for row in k + 1..range.end {

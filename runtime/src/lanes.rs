@@ -1,8 +1,8 @@
-//! Legs that are alike, side by side: as many numbers at once as a vector of the processor holds, one of each leg.
+//! Equal legs in SIMD lanes: one number of each leg in each lane of a vector.
 //!
-//! A function that works on more legs than a vector has lanes does so in turns, the last of which begins as much earlier as
-//! is needed to be full: what it computes once more is the same. Where there are fewer, the lanes that are left have the
-//! last leg once more. In builds that are not optimised, where vectors are slower than numbers, there is one lane.
+//! With more legs than lanes a function works in batches. The last batch starts earlier, so that it
+//! is full; repeated results are equal. With fewer legs the remaining lanes repeat the last leg.
+//! Builds without optimisation, in which vectors are slower than scalars, have one lane.
 
 mod chosen;
 #[cfg(dispatch)]
@@ -19,12 +19,12 @@ pub use number::{atan2, sign, signed, sin_cos, sin_cos_all, sqrt};
 pub use side_by_side::SideBySide;
 pub use vector::{Few, Many, Vector};
 
-/// A number of each of as many legs as a vector has lanes.
+/// One number for each of as many legs as a vector has lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct Lanes<V>(V);
 
 impl<V: Vector> Lanes<V> {
-    /// The same number of every leg.
+    /// The same number for every leg.
     #[inline(always)]
     #[must_use]
     pub fn all(proof: V::Proof, number: f64) -> Self {
@@ -32,9 +32,9 @@ impl<V: Vector> Lanes<V> {
     }
 }
 
-/// What is a number of each leg: one of each, or the same one of all.
+/// A number for each leg: individual ones, or a common one.
 pub trait OfLegs<V: Vector> {
-    /// The number of each.
+    /// The number of each leg.
     fn of_legs(self, proof: V::Proof) -> V;
 }
 
@@ -52,7 +52,7 @@ impl<V: Vector> OfLegs<V> for f64 {
     }
 }
 
-/// A turn of a function of `LEGS` legs: which of them are in its lanes.
+/// A batch of a function of `LEGS` legs: the legs in its lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct Turn<V: Vector, const LEGS: usize>(usize, V::Proof);
 
@@ -61,7 +61,7 @@ impl<V: Vector, const LEGS: usize> Turn<V, LEGS> {
     #[inline(always)]
     fn leg(self, lane: usize) -> usize {
         let leg = self.0 + lane;
-        // Turns of more legs than lanes are full.
+        // Batches of functions with more legs than lanes are full.
         if LEGS < V::WIDTH {
             leg.min(LEGS - 1)
         } else {
@@ -70,7 +70,7 @@ impl<V: Vector, const LEGS: usize> Turn<V, LEGS> {
     }
 }
 
-/// The turns in which `LEGS` legs are gone through, as many at once as vectors have lanes.
+/// The batches of `LEGS` legs, with as many legs as vectors have lanes.
 #[inline(always)]
 pub fn places<V: Vector, const LEGS: usize>(
     proof: V::Proof,
@@ -81,7 +81,7 @@ pub fn places<V: Vector, const LEGS: usize>(
     (0..LEGS.div_ceil(V::WIDTH)).map(turn)
 }
 
-/// The numbers of the legs of a turn, of a row that has those of all legs.
+/// The numbers of a batch's legs, from a row with those of all legs.
 #[inline(always)]
 #[must_use]
 pub fn row<V: Vector, const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<V, LEGS>) -> Lanes<V> {
@@ -93,7 +93,7 @@ pub fn row<V: Vector, const LEGS: usize>(numbers: &[f64; LEGS], at: Turn<V, LEGS
     scattered(numbers, [0, 1], at)
 }
 
-/// The elements of an array that belong to the legs of a turn, `COUNT` to each leg.
+/// The elements of an array that belong to the legs of a batch, `COUNT` for each leg.
 #[inline(always)]
 #[must_use]
 pub fn elements<const COUNT: usize, const LENGTH: usize, V: Vector, const LEGS: usize>(
@@ -103,8 +103,9 @@ pub fn elements<const COUNT: usize, const LENGTH: usize, V: Vector, const LEGS: 
     core::array::from_fn(|element| scattered(array, [element, COUNT], at))
 }
 
-/// An element of each of the legs of a turn, of an array that has the first leg's at `first` and those of the others at
-/// distances of `stride`.
+/// One element for each leg of a batch, from an array with a stride.
+///
+/// The first leg's element is at `first`, those of the others at distances of `stride`.
 #[inline(always)]
 #[must_use]
 pub fn scattered<const LENGTH: usize, V: Vector, const LEGS: usize>(
@@ -116,8 +117,8 @@ pub fn scattered<const LENGTH: usize, V: Vector, const LEGS: usize>(
     Lanes(V::of(at.1, |lane| of_lane(lane).unwrap_or(0.0)))
 }
 
-/// An element of each of the legs of a turn, as [`scattered`], of an array in which only the first `count` legs have one;
-/// zero for the others.
+/// Like [`scattered`], for an array in which only the first `count` legs have an element; zero for
+/// the others.
 #[inline(always)]
 #[must_use]
 pub fn scattered_of_first<const LENGTH: usize, V: Vector, const LEGS: usize>(
@@ -133,7 +134,7 @@ pub fn scattered_of_first<const LENGTH: usize, V: Vector, const LEGS: usize>(
     Lanes(V::of(at.1, |lane| of_leg(at.leg(lane)).unwrap_or(0.0)))
 }
 
-/// The sum over all legs: halves are added until one number is left, whatever the number of lanes.
+/// The sum over all legs by repeated halving, independent of the number of lanes.
 #[inline(always)]
 #[must_use]
 pub fn sum<const LEGS: usize>(of_legs: &[f64; LEGS]) -> f64 {
@@ -150,7 +151,8 @@ pub fn sum<const LEGS: usize>(of_legs: &[f64; LEGS]) -> f64 {
     sums.first().copied().unwrap_or(0.0)
 }
 
-/// Writes a column of each of the legs of a turn into a row, as [`put`], in which only the first `count` legs have one.
+/// Writes a column of each leg of a batch into a row, like [`put`]; only the first `count` legs
+/// have one.
 #[inline(always)]
 pub fn put_of_first<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     row: &mut [f64; COLUMNS],
@@ -171,8 +173,9 @@ pub fn put_of_first<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     }
 }
 
-/// Writes a column of each of the legs of a turn into a row: that of the first of all legs is `first`, and from one
-/// leg's to the next one's there are `stride`.
+/// Writes a column of each leg of a batch into a row.
+///
+/// The column of the first of all legs is `first`; those of successive legs are `stride` apart.
 #[inline(always)]
 pub fn put<const COLUMNS: usize, V: Vector, const LEGS: usize>(
     row: &mut [f64; COLUMNS],

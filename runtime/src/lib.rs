@@ -1,13 +1,17 @@
-//! What a generated robot model needs at run time, and nothing more: the [`Model`] trait, [`Error`],
-//! a few functions of [`math`], forward kinematics in [`forward`], poses of platforms that move aside in [`aside`], numeric
-//! inverse kinematics in [`inverse`], case 2 for any kept actuators in [`partition`], and the macro
-//! `#[redundant_robot("robot.toml")]`.
+//! Runtime of generated robot models.
 //!
-//! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
-//! trigonometry come from the standard library, with the feature `libm` and without `std` from the crate of
-//! that name. With the feature `dispatch` (default, and with it `std`) programs for any x86-64 that are optimised (level 2
-//! and 3) find out when they run whether the processor has AVX2 or AVX-512, and use them: long functions are compiled once
-//! or twice more, and last digits may differ from one kind of processor to another.
+//! It has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
+//! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
+//! kinematics in [`inverse`], poses of platforms with parasitic motion in [`aside`], and the
+//! actuator projection for any kept actuators in [`partition`].
+//!
+//! The crate is `no_std` and allocates nothing. Its features are:
+//!
+//! - `std` (default): square roots and trigonometry come from the standard library;
+//! - `libm`, without `std`: they come from the crate of that name;
+//! - `dispatch` (default, with `std`): optimised programs (level 2 and 3) for any x86-64 detect
+//!   AVX2 and AVX-512 at run time and use them. Long functions are compiled once or twice more, and
+//!   last digits may differ between processors.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(not(any(feature = "std", feature = "libm")))]

@@ -1,4 +1,4 @@
-//! The face that a robot shows to identification and simulation, compiled or interpreted.
+//! Interface of robots, compiled or interpreted, for identification and simulation.
 
 use crate::{Error, Function, SampleError, Sizes, StandardParameter};
 
@@ -7,11 +7,11 @@ use crate::{Error, Function, SampleError, Sizes, StandardParameter};
 pub struct Parameter {
     /// Unique name, `zz_2_leg3`, `m_platform` or `m_payload`.
     pub name: &'static str,
-    /// Which of the standard parameters it is.
+    /// The standard parameter.
     pub symbol: StandardParameter,
     /// SI unit, for instance `kg m²`.
     pub unit: &'static str,
-    /// Where the body is.
+    /// The body.
     pub body: Body,
 }
 
@@ -68,11 +68,11 @@ impl Parameter {
 /// A base parameter: an independent column, and the standard parameters that are regrouped into it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseParameter {
-    /// Name: the kept parameter's, with the suffix `R` where others are regrouped into it.
+    /// Name: that of the kept parameter, with the suffix `R` if others are regrouped into it.
     pub name: &'static str,
     /// The standard parameter whose column is kept.
     pub parameter: &'static str,
-    /// Other standard parameters that it stands for, with their coefficients.
+    /// Other standard parameters that are regrouped into it, with their coefficients.
     pub regrouped: &'static [(&'static str, f64)],
 }
 
@@ -92,26 +92,27 @@ impl BaseParameter {
     }
 }
 
-/// Where a body is in the robot.
+/// Location of a body in the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Body {
     /// The platform.
     Platform,
     /// The payload, fixed on the platform.
     Payload,
-    /// A body of a leg. Bodies of different legs with one `index` are a priori alike when their
-    /// legs have one `shape`.
+    /// A body of a leg. Bodies with the same `index` in legs of the same `shape` are a priori
+    /// equal.
     Leg {
         /// Index of the leg.
         leg: u16,
         /// Index of the body in its leg, counted from 0.
         index: u16,
-        /// Legs written once and placed several times share this number.
+        /// Index of the leg's shape, equal for legs that are described once and placed several
+        /// times.
         shape: u16,
     },
 }
 
-/// What a model says about its robot, sizes aside.
+/// Description of a model's robot.
 #[derive(Debug, Clone, Copy)]
 pub struct Info<'a> {
     /// Name of the robot.
@@ -126,8 +127,9 @@ pub struct Info<'a> {
     pub actuated_joints: &'a [usize],
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
     pub actuator_is_revolute: &'a [bool],
-    /// Names of the independent coordinates, in the order of the twist: `x`, `y`, `z`, `rx`, `ry`, `rz` of a
-    /// free platform, whose pose has seven numbers.
+    /// Names of the independent coordinates, in the order of the twist.
+    ///
+    /// They are `x`, `y`, `z`, `rx`, `ry`, `rz` for a free platform, whose pose has seven numbers.
     pub coordinates: &'a [&'a str],
     /// Standard parameters whose column is not identically zero, in column order.
     pub parameters: &'a [Parameter],
@@ -137,26 +139,27 @@ pub struct Info<'a> {
     pub home_pose: &'a [f64],
     /// Joint positions of the home configuration.
     pub home_joints: &'a [f64],
-    /// Kept actuators of case 2 as the description chooses them (indices among the actuators).
+    /// Kept actuators of the actuator projection in the description (indices among the actuators).
     pub kept_actuators: &'a [usize],
 }
 
 /// A robot whose functions can be evaluated at states.
 ///
-/// Numbers lie in slices, sample after sample; matrices are row-major.
+/// Arrays are slices, sample by sample; matrices are row-major.
 pub trait Model: Sync {
     /// Names and sizes.
     fn info(&self) -> Info<'_>;
 
-    /// Evaluates `function` at `output.len() / (rows * columns)` samples. `inputs` are those of
-    /// [`Function::inputs`], each holding one row of numbers per sample; an input of exactly one row, as
-    /// parameters mostly are, serves all samples.
+    /// Evaluates `function` at `output.len() / (rows * columns)` samples.
+    ///
+    /// `inputs` are those of [`Function::inputs`], each with one row of numbers per sample. An
+    /// input with exactly one row, as is usual for parameters, is shared by all samples.
     ///
     /// # Errors
-    /// [`Error::NotOffered`] for a function that [`Function::condition`] denies the robot; inputs or an
-    /// output of other lengths than [`crate::block::samples`] wants; else the first sample at which the
-    /// model has no value, and why; of several legs that fail there, one is named. The output is then
-    /// undefined.
+    /// [`Error::NotOffered`] if [`Function::condition`] excludes the function for this robot. An
+    /// error of [`crate::block::samples`] for inputs or an output of wrong lengths. Otherwise the
+    /// error of the first sample without value; if several legs fail there, one is named. The
+    /// output is then undefined.
     fn evaluate(
         &self,
         function: Function,
@@ -164,16 +167,18 @@ pub trait Model: Sync {
         output: &mut [f64],
     ) -> Result<(), SampleError>;
 
-    /// Forward kinematics: the pose that fits all measured actuator positions best in the sense of
-    /// least squares, found from the start pose in `pose`, so that the assembly mode is that of the
-    /// start.
+    /// Forward kinematics: the least-squares pose of all measured actuator positions.
+    ///
+    /// It starts from the pose in `pose`, which determines the assembly mode.
     ///
     /// # Errors
-    /// No convergence, or a singular or unreachable configuration on the way; `pose` is unchanged then.
+    /// No convergence, or a singular or unreachable configuration during the iteration; `pose` is
+    /// then unchanged.
     fn pose_from_actuators(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error>;
 
-    /// Moves a pose by a small displacement `step` along the twist coordinates (r numbers); of a platform that
-    /// moves aside also along the others, until the legs close.
+    /// Displaces a pose by a small `step` along the twist coordinates (r numbers).
+    ///
+    /// With parasitic motion the dependent coordinates are corrected, too, until the legs close.
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
         crate::forward::displace(pose, step);
     }

@@ -1,11 +1,10 @@
-//! Case 2 for any choice of kept actuators, eq. (36).
+//! Actuator projection for any choice of kept actuators, eq. (36).
 //!
-//! With the rows of J_p^inv of the r kept actuators in J_a and those of the others in J_b, the torques
-//! obey Γ¹ = J_aᵀ τ_a + J_bᵀ τ_b. Hence Γ² = τ_a + J_a^-T J_bᵀ τ_b = J_a^-T Γ¹: what is projected on the
-//! platform, be it a regressor, the torques or the inputs of inverse dynamics, becomes what is
-//! projected on the kept actuators by one solution with J_aᵀ. Generated code has the partition that the
-//! description chooses as functions of its own; this module serves every other one, from
-//! `inverse_jacobian` and the results of case 1.
+//! Let J_a be the rows of J_p^inv of the r kept actuators and J_b the others. The torques obey
+//! Γ¹ = J_aᵀ τ_a + J_bᵀ τ_b, hence Γ² = τ_a + J_a^-T J_bᵀ τ_b = J_a^-T Γ¹. So a solution with J_aᵀ
+//! converts any platform projection to the actuator projection: a regressor, torques, or the inputs
+//! of inverse dynamics. Generated code has functions for the partition in the description. This
+//! module serves all others, from `inverse_jacobian` and the results of the platform projection.
 //!
 //! ```
 //! use overact::partition::Partition;
@@ -24,8 +23,10 @@
 use crate::Actuators;
 use crate::{Error, SINGULAR, guard, math::sqrt};
 
-/// Smallest length of a column of J_p^inv, relative to the longest, by which a coordinate is scaled: far
-/// below what a change of units makes of it, far above rounding.
+/// Smallest length of a column of J_p^inv, relative to the longest, by which a coordinate is
+/// scaled.
+///
+/// It is far below the effect of a change of units, and far above rounding.
 const SMALLEST_SCALE: f64 = 1e-5;
 
 /// r kept actuators in one configuration of a robot: the factors of their J_aᵀ.
@@ -33,20 +34,21 @@ const SMALLEST_SCALE: f64 = 1e-5;
 pub struct Partition<const R: usize> {
     /// L below the diagonal, U on and above it, rows of J_aᵀ in the order of `order`.
     factors: [[f64; R]; R],
-    /// Which row of J_aᵀ stands in each row of the factors.
+    /// The row of J_aᵀ in each row of the factors.
     order: [usize; R],
     /// Condition number of J_a.
     condition: f64,
 }
 
 impl<const R: usize> Partition<R> {
-    /// The partition that keeps the actuators `kept`, counted from 0 in the order of q and τ;
+    /// The partition with the kept actuators `kept`, counted from 0 in the order of q and τ.
+    ///
     /// `inverse_jacobian` is J_p^inv, one row of r numbers per actuator.
     ///
     /// # Errors
-    /// [`Error::SingularPartition`] where the kept actuators do not determine the platform's motion: the
-    /// condition number of J_a is above 1/[`SINGULAR`]. [`Error::NoActuator`] and
-    /// [`Error::NotFinite`] for other inputs that have no meaning.
+    /// [`Error::SingularPartition`] if the kept actuators do not determine the platform's motion:
+    /// the condition number of J_a exceeds 1/[`SINGULAR`]. [`Error::NoActuator`] and
+    /// [`Error::NotFinite`] for other invalid inputs.
     pub fn new(inverse_jacobian: &[[f64; R]], kept: &[usize; R]) -> Result<Self, Error> {
         let actuators = inverse_jacobian.len();
         if let Some(&index) = kept.iter().find(|&&at| at >= actuators) {
@@ -77,22 +79,25 @@ impl<const R: usize> Partition<R> {
         }
     }
 
-    /// Condition number ‖J_aᵀ‖ ‖J_a^-T‖ (largest sum of a row) after every coordinate of the twist is
-    /// scaled by the length of its column in J_p^inv (a shorter one than 1e-5 of the longest by that), so
-    /// that it does not depend on whether lengths are in metres or millimetres.
+    /// Condition number ‖J_aᵀ‖ ‖J_a^-T‖ (largest row sum) with scaled twist coordinates.
     ///
-    /// The actuators' model amplifies errors of Γ¹ by up to this number.
+    /// Every coordinate is scaled by the length of its column in J_p^inv, but at least by 1e-5 of
+    /// the longest. So it does not depend on whether lengths are in metres or millimetres. Errors
+    /// of Γ¹ are amplified by up to this number.
     #[must_use]
     pub const fn condition(&self) -> f64 {
         self.condition
     }
 
-    /// From Γ¹ to Γ² in place: `inputs` is a matrix of r rows, row-major, with any number of columns.
-    /// A regressor of case 1 becomes that of case 2.
+    /// Converts Γ¹ to Γ² in place: `inputs` is a matrix of r rows, row-major, with any number of
+    /// columns.
+    ///
+    /// A regressor of the platform projection becomes that of the actuator projection.
     ///
     /// # Errors
-    /// [`Error::Length`] if the numbers are no r rows, [`Error::NotFinite`] if one is not finite, [`Error::Overflow`] if
-    /// a result is too large for a number; the columns behind it are left as they were then.
+    /// [`Error::Length`] if the length is no multiple of r, [`Error::NotFinite`] for an input that
+    /// is not finite, and [`Error::Overflow`] for a result that is too large. Later columns are
+    /// then unchanged.
     pub fn project(&self, inputs: &mut [f64]) -> Result<(), Error> {
         let columns = inputs.len().checked_div(R).unwrap_or(0);
         if inputs.len() != columns * R {
@@ -140,8 +145,8 @@ impl<const R: usize> Partition<R> {
                 .map(|row| row[coordinate] * row[coordinate]);
             *scale = sqrt(squares.sum());
         }
-        // Where no actuator moves a coordinate the robot itself is singular: a column of rounding must not
-        // be made as long as the others.
+        // If no actuator moves a coordinate the robot itself is singular: a column of rounding
+        // errors must not be scaled to the length of the others.
         let least = SMALLEST_SCALE * scales.iter().fold(0.0_f64, |m, s| m.max(*s));
         for scale in &mut scales {
             *scale = scale.max(least);
@@ -151,7 +156,7 @@ impl<const R: usize> Partition<R> {
         for (row, scale) in transposed.iter().zip(&scales) {
             largest = largest.max(size(row) / scale);
         }
-        // Column by column of J_a^-T S, S scaling the coordinates back.
+        // Column by column of J_a^-T S, where S undoes the scaling of the coordinates.
         let mut sums = [0.0; R];
         for (coordinate, scale) in scales.iter().enumerate() {
             let mut unit = [0.0; R];
@@ -160,7 +165,7 @@ impl<const R: usize> Partition<R> {
                 *sum += entry.abs();
             }
         }
-        // A maximum would pass over the NaN of a zero pivot.
+        // `max` would ignore the NaN of a zero pivot.
         if sums.iter().any(|sum| !sum.is_finite()) || !largest.is_finite() {
             return f64::INFINITY;
         }
@@ -168,7 +173,7 @@ impl<const R: usize> Partition<R> {
     }
 }
 
-/// L U of a matrix with its rows in the order that is returned, the largest pivot first.
+/// LU factorisation of a matrix with row pivoting; also returns the order of the rows.
 fn factorised<const R: usize>(mut matrix: [[f64; R]; R]) -> ([[f64; R]; R], [usize; R]) {
     let mut order: [usize; R] = core::array::from_fn(|row| row);
     for k in 0..R {
@@ -200,7 +205,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Three actuators, two coordinates; actuators 0 and 2 move alike.
+    /// Three actuators, two coordinates; actuators 0 and 2 have proportional rates.
     const JACOBIAN: [[f64; 2]; 3] = [[0.0, 3.0], [2.0, 1.0], [0.0, -6.0]];
 
     #[test]
@@ -236,7 +241,7 @@ mod tests {
         assert!((3e6..5e6).contains(&condition), "{condition:e}");
     }
 
-    /// The robot's own singularity, where a coordinate's column is nothing but rounding.
+    /// The robot's own singularity: a coordinate's column is only rounding.
     #[test]
     fn a_coordinate_that_no_actuator_moves_is_singular() {
         for small in [0.0, 1e-17, 1e-16] {

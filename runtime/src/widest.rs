@@ -1,12 +1,15 @@
-//! Straight functions compiled once or twice more for the vectors of newer processors, and run so where there are some.
+//! Straight functions that are also compiled for the vectors of newer processors, and chosen at run
+//! time.
 //!
-//! A build for any processor of the x86-64 has 16 registers of two numbers, and instructions that overwrite one of their
-//! operands. Those of AVX2 have four, and a place of their own for the result; those of AVX-512 are 32. Products and sums
-//! stay apart, so that but for what is made of sines and cosines, which have fused ones, the numbers are those of any other
-//! processor, to the last bit.
+//! A build for any x86-64 has 16 registers of two numbers, and instructions that overwrite an
+//! operand. Registers of AVX2 have four numbers, and its instructions have a separate destination;
+//! AVX-512 has 32 registers. Products and sums are not fused, so results are identical on all
+//! processors, except those of sines and cosines.
 
-/// Runs a function, whose closure is to be inlined, with the instructions of the processor at hand: in optimised builds
-/// with the feature `dispatch`. In others it is just called.
+/// Runs a function with the instructions of the processor, in optimised builds with the feature
+/// `dispatch`.
+///
+/// The closure has to be inlined. Other builds just call it.
 #[inline(always)]
 pub fn widest<R>(function: impl FnOnce() -> R) -> R {
     #[cfg(dispatch)]
@@ -16,8 +19,9 @@ pub fn widest<R>(function: impl FnOnce() -> R) -> R {
     function()
 }
 
-/// The same with AVX-512 where there is some, whose registers are twice as many: for functions that write hundreds of
-/// numbers, of which those of AVX2 hold too few.
+/// The same with AVX-512 if available, which has twice as many registers.
+///
+/// It is for functions that write hundreds of numbers, for which AVX2 has too few registers.
 #[inline(always)]
 pub fn roomiest<R>(function: impl FnOnce() -> R) -> R {
     #[cfg(dispatch)]

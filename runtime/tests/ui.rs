@@ -1,17 +1,17 @@
-//! What the macro says of wrong uses and wrong descriptions, and that right ones compile.
+//! Errors of the macro for wrong uses and wrong descriptions, and compilation of correct ones.
 //!
-//! The macro looks for descriptions beside the user's manifest. The manifest here is the one that
-//! `trybuild` writes into the target folder, so the descriptions are copied there first. `trybuild` builds
-//! all that the tests' package depends on once more, so they stand here, where that is the macro and
-//! little else.
+//! The macro looks for descriptions relative to the user's manifest. Here that is the one that
+//! `trybuild` writes into the target folder, so the descriptions are copied there first. `trybuild`
+//! rebuilds all dependencies of the tests' package. So the tests are in this package, which depends
+//! on little more than the macro.
 
 use overact_tier::is_full;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Where `trybuild` puts its crate: in the target folder, which is the third above a test's program
-/// (`debug/deps/ui-...`).
+/// The folder of `trybuild`'s crate in the target folder, which is the third parent of a test
+/// program (`debug/deps/ui-...`).
 fn user_crate() -> Result<PathBuf, Box<dyn Error>> {
     let program = env::current_exe()?;
     let target = program.ancestors().nth(3).ok_or("no target folder")?;
@@ -22,7 +22,7 @@ fn copy_descriptions() -> Result<(), Box<dyn Error>> {
     let to = user_crate()?.join("descriptions");
     fs::create_dir_all(&to)?;
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-    // A robot whose joints Newton's method finds.
+    // A robot whose joints are found by Newton's method.
     let newton = "newton_point.toml";
     fs::copy(package.join("../cli/tests/c").join(newton), to.join(newton))?;
     let from = package.join("tests/ui/descriptions");
@@ -33,8 +33,9 @@ fn copy_descriptions() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The cases of the default tier: a robot that compiles, wrong uses of the macro, and two descriptions, one of
-/// which is right but for its geometry. What else is said of descriptions is tested beside what says it.
+/// Cases of the default tier: a robot that compiles, wrong uses of the macro, and two descriptions,
+/// one of which has only a wrong geometry. Other errors of descriptions are tested next to the code
+/// that reports them.
 const FEW: [&str; 7] = [
     "pass.rs",
     "pass_functions.rs",

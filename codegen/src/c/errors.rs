@@ -1,5 +1,5 @@
-//! The errors of a robot as an `enum`: one for each leg, input and condition, so that a number names what is
-//! wrong. Their texts begin as those of the Rust functions' errors.
+//! The errors of a robot as an `enum`: one for each leg, input and condition, so that a number
+//! identifies the error. Their texts begin like those of the Rust functions.
 
 use super::lines::string;
 use super::naming::Naming;
@@ -14,7 +14,7 @@ struct Kind {
     text: String,
 }
 
-/// Inputs that functions have, in the order of the numbers of their errors.
+/// Inputs of functions, in the order of their error numbers.
 const INPUTS: [&str; 15] = [
     "pose",
     "joints",
@@ -33,8 +33,9 @@ const INPUTS: [&str; 15] = [
     "base_parameters",
 ];
 
-/// All errors that a robot's functions may have, whichever functions are written: their numbers are those of
-/// the robot.
+/// All errors of a robot's functions.
+///
+/// The numbers depend on the robot only, not on which functions are generated.
 fn kinds(model: &RobotModel) -> Vec<Kind> {
     let kind = |name: &str, text: &str| Kind {
         name: name.to_owned(),
@@ -113,7 +114,7 @@ pub fn not_finite(input: &str) -> String {
     format!("NOT_FINITE_{}", input.to_uppercase())
 }
 
-/// The legs in capitals; legs whose names differ in capitals alone have numbers behind them.
+/// Names of the legs in capitals; legs whose names differ in case only get numbers.
 #[must_use]
 pub fn leg_constants(model: &RobotModel) -> Vec<String> {
     let mut taken = BTreeSet::new();
@@ -131,20 +132,20 @@ pub fn leg_constants(model: &RobotModel) -> Vec<String> {
     legs.map(name).collect()
 }
 
-/// A leg in capitals.
+/// Name of a leg in capitals.
 fn leg_constant(model: &RobotModel, leg: &str) -> String {
     let at = model.mechanism.legs.iter().position(|l| l.name == leg);
     let name = at.and_then(|at| leg_constants(model).into_iter().nth(at));
     name.unwrap_or_default()
 }
 
-/// The enumerator, without prefix, of a leg that is singular.
+/// The enumerator of a singular leg, without prefix.
 #[must_use]
 pub fn singular_leg(model: &RobotModel, leg: &str) -> String {
     format!("SINGULAR_LEG_{}", leg_constant(model, leg))
 }
 
-/// The enumerator, without prefix, of a condition that does not hold.
+/// The enumerator of a violated condition, without prefix.
 #[must_use]
 pub fn of_condition(model: &RobotModel, condition: &Condition) -> String {
     let leg = |leg: &str| leg_constant(model, leg);
@@ -162,7 +163,7 @@ pub fn of_condition(model: &RobotModel, condition: &Condition) -> String {
     }
 }
 
-/// The `enum` and the function that tells its texts.
+/// The `enum`, and the declaration of the function that returns the texts.
 #[must_use]
 pub fn declaration(model: &RobotModel, naming: &Naming) -> String {
     let kinds = kinds(model);
@@ -184,7 +185,7 @@ pub fn declaration(model: &RobotModel, naming: &Naming) -> String {
     format!("{head}{lines}{end}")
 }
 
-/// The texts.
+/// The function that returns the texts.
 #[must_use]
 pub fn definition(model: &RobotModel, naming: &Naming) -> String {
     let kinds = kinds(model);

@@ -9,18 +9,18 @@ use crate::model::RobotModel;
 use crate::writing::body::Body;
 use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 
-/// How far a function's body is indented.
+/// Indentation of a function's body.
 const INDENT: usize = 4;
 
-/// Writes what a body is made of.
+/// Writes the statements and expressions of a body.
 pub struct Writer<'a> {
     /// The robot.
     pub model: &'a RobotModel,
     /// Its names.
     pub naming: &'a Naming,
-    /// What the inputs of the program are called in the body.
+    /// Names of the program's inputs in the body.
     pub inputs: Vec<String>,
-    /// Angles that have a name of their own.
+    /// Number of angles with a name of their own.
     pub angles: usize,
 }
 
@@ -193,14 +193,14 @@ impl Writer<'_> {
     }
 }
 
-/// Leaves the function with an error unless a condition holds; it does not hold for what is no number.
+/// Returns from the function with an error unless a condition holds; NaN violates it.
 #[must_use]
 pub fn fails(holds: &str, error: &str) -> String {
     let condition = code(INDENT, &format!("if (!({holds})) {{"));
     format!("{condition}        return {error};\n    }}\n")
 }
 
-/// Whether a statement assigns a name, first or beside another one.
+/// Whether a statement assigns a name, alone or with another one.
 fn assigns(statement: &Statement, name: &str) -> bool {
     let in_pair = |pair: &Pair| {
         let names = [&pair.sine, &pair.cosine];

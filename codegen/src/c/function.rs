@@ -17,11 +17,11 @@ use overact_core::Extent;
 pub struct Written {
     /// The comment in the header.
     pub documentation: String,
-    /// The signature, without what ends it.
+    /// The signature, without the terminating character.
     pub signature: String,
-    /// The body in braces; empty where the runtime's part writes it.
+    /// The body in braces; empty if the runtime part contains it.
     pub body: String,
-    /// All names that the body assigns.
+    /// All names assigned in the body.
     pub names: Vec<String>,
 }
 
@@ -44,7 +44,7 @@ pub fn written(model: &RobotModel, function: &CompiledFunction, naming: &Naming)
     }
 }
 
-/// The signature of a function with these arguments and an output.
+/// Signature of a function with these arguments and an output.
 #[must_use]
 pub fn signature(name: &str, arguments: &[Array], naming: &Naming) -> String {
     let restrict = naming.constant("RESTRICT");
@@ -64,13 +64,14 @@ pub fn has_quaternion(model: &RobotModel) -> bool {
     platform.is_some_and(|platform| platform.motion.has_quaternion())
 }
 
-/// What a function does before all else: it refuses numbers that are not finite or too large, scales the quaternion of a pose
-/// to length 1, and finds the pose and the joints that the rest takes.
+/// Start of a function: checks, and iterations for pose and joints.
+///
+/// It rejects numbers that are not finite or too large, and normalises the quaternion of a pose.
 fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> String {
     let mut out = String::new();
     for Array { name, shape } in &outline.arguments {
         let length = shape.iter().product::<usize>();
-        // C compares no count with 0 without a warning.
+        // C compilers warn about comparisons of an unsigned count with 0.
         if length == 0 {
             out += &format!("    (void){name};\n");
             continue;
@@ -97,7 +98,7 @@ fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> Strin
     out
 }
 
-/// Refuses an input with a number that is not finite or too large.
+/// Rejects an input with a number that is not finite or too large.
 #[must_use]
 pub fn in_range(name: &str, length: &str, naming: &Naming) -> String {
     let most = number(naming.float.limits().largest.of(name));
@@ -111,7 +112,7 @@ pub fn in_range(name: &str, length: &str, naming: &Naming) -> String {
     fails(&holds, &error)
 }
 
-/// An array that a function fills, or its error.
+/// An array that a function fills; returns its error.
 fn found(array: &str, size: &str, call: &str, naming: &Naming) -> String {
     let (size, kind, ok) = (
         naming.constant(size),
@@ -131,7 +132,7 @@ fn takes_pose(outline: &Outline<'_>) -> bool {
         .any(|argument| argument.name == "pose")
 }
 
-/// What the pose is called in the body.
+/// Name of the pose in the body.
 fn pose_name(model: &RobotModel, outline: &Outline<'_>) -> &'static str {
     match (outline.finds_pose, has_quaternion(model)) {
         (true, _) => "found_pose",
@@ -140,7 +141,7 @@ fn pose_name(model: &RobotModel, outline: &Outline<'_>) -> &'static str {
     }
 }
 
-/// What stands behind the boundary, and the names that it assigns.
+/// The code after the checks, and the names that it assigns.
 fn rest(
     model: &RobotModel,
     function: &CompiledFunction,
@@ -161,7 +162,7 @@ fn rest(
     }
     let reserved = |name: &str| naming.is_reserved(name);
     let labels = Labels::new(model, function);
-    // An error leaves the output as it was: what may still fail writes it last.
+    // An error leaves the output unchanged: functions that may still fail write it last.
     let body = match outline.is_placed() && program.guards.is_empty() {
         true => Body::placed(program, &labels, &reserved),
         false => Body::write(program, &labels, &reserved),
@@ -229,7 +230,7 @@ fn documented(
     documentation(&lines)
 }
 
-/// How many numbers an argument has, by the macros of sizes.
+/// Number of elements of an argument, as macros of sizes.
 fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
     let sizes: &[&str] = match argument {
         "pose" | "start" => &["POSE"],

@@ -1,9 +1,9 @@
-//! Functions that iterate: forward kinematics by Gauss and Newton, inverse kinematics by Newton's method, and
-//! partitions of case 2. They are the counterparts of `overact::forward`, `overact::inverse` and
-//! `overact::partition`, operation by operation; `codegen/src/emission/model_impl.rs` and `inverse.rs` are
-//! their Rust.
+//! Iterative functions: forward kinematics by Gauss-Newton, inverse kinematics by Newton's method,
+//! and partitions of the actuator projection.
 //!
-//! In the texts `rob_` and `ROB_` stand for the robot's prefix.
+//! They correspond to `overact::forward`, `overact::inverse` and `overact::partition`, operation by
+//! operation. The Rust is in `codegen/src/emission/model_impl.rs` and `inverse.rs`. In the C texts,
+//! `rob_` and `ROB_` are placeholders of the robot's prefix.
 
 use super::errors;
 use super::function::{has_quaternion, in_range, signature};
@@ -17,10 +17,10 @@ use overact_core::Function;
 const DISPLACE: &str = include_str!("text/displace.c");
 const DISPLACE_ASIDE: &str = include_str!("text/displace_aside.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
-/// What both displacements of poses with a quaternion call.
+/// Function called by both displacements of poses with a quaternion.
 const TURN: &str = include_str!("text/turn.c");
 const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
-/// The loop around the steps that `rob_FIND` finds.
+/// The loop around the steps that `rob_FIND` computes.
 const STEPS: &str = include_str!("text/steps.c");
 const FIT_POSE: &str = include_str!("text/fit_pose.c");
 const FORWARD_OF_A_TREE: &str = "    for (int i = 0; i < ROB_POSE; i++) {
@@ -90,9 +90,10 @@ const FORWARD_END: &str = "    if (error != ROB_OK) {
 ";
 
 const NEWTON: &str = include_str!("text/newton.c");
-/// What `ROB_WAY` stands for is the scaling of the quaternion on the way.
+/// The placeholder `ROB_WAY` is replaced by the normalisation of the quaternion of an intermediate
+/// pose.
 const JOINTS: &str = include_str!("text/joints.c");
-/// The quaternion of a pose on the way, scaled to length 1.
+/// Normalises the quaternion of an intermediate pose.
 const WAY_OF_A_QUATERNION: &str = "            {
                 double *const q = &way[ROB_POSE - 4];
                 const double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -110,7 +111,8 @@ const JOINTS_CHECKS_QUATERNION: &str = "    double unit_pose[ROB_POSE];
 
 const PARTITION_TYPE: &str = include_str!("text/partition.h");
 const PARTITION: &str = include_str!("text/partition.c");
-/// Whether partitions of case 2 are written: for redundant robots with all that they are made from.
+/// Whether partitions of the actuator projection are written: for redundant robots with all
+/// functions needed.
 fn has_partitions(model: &RobotModel) -> bool {
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
     let jacobian = model.function(Function::InverseJacobian, MotionInput::Pose);
@@ -134,7 +136,7 @@ fn forward_arguments(model: &RobotModel) -> [Array; 2] {
     ]
 }
 
-/// What is declared in the header.
+/// Declarations for the header.
 #[must_use]
 pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
     let mut out = String::new();
@@ -164,14 +166,14 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
     out
 }
 
-/// How forward kinematics uses a closed form.
+/// Use of a closed form by forward kinematics.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ClosedForm {
-    /// There is none.
+    /// No closed form.
     None,
-    /// It is the pose, as there is no actuator too many.
+    /// The pose itself, since there is no redundant actuator.
     Alone,
-    /// It is where the iteration starts, or starts again.
+    /// The start, or restart, of the iteration.
     Start,
 }
 
@@ -184,7 +186,7 @@ fn closed_form(model: &RobotModel) -> ClosedForm {
     }
 }
 
-/// What stands in the source file.
+/// Definitions for the source file.
 #[must_use]
 pub fn definitions(model: &RobotModel, naming: &Naming) -> String {
     let mut parts = Vec::new();
@@ -253,7 +255,8 @@ fn fitting(model: &RobotModel) -> (&'static str, String) {
     }
 }
 
-/// Which of the six coordinates of a platform that moves aside are independent, and which follow.
+/// Tables of the independent and dependent ones of six coordinates of a platform with parasitic
+/// motion.
 fn coordinates(independent: &[usize]) -> String {
     let table = |name: &str, of: Vec<usize>| {
         let elements: Vec<String> = of.iter().map(ToString::to_string).collect();
@@ -264,7 +267,7 @@ fn coordinates(independent: &[usize]) -> String {
     table("independent", independent.to_vec()) + &table("dependent", others) + "\n"
 }
 
-/// Inverse kinematics by Newton's method, with the tables that it needs of the legs.
+/// Inverse kinematics by Newton's method, with its tables of the legs.
 fn joints(model: &RobotModel, naming: &Naming) -> String {
     let mechanism = &model.mechanism;
     let mut first = vec!["0".to_owned()];

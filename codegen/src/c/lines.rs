@@ -1,10 +1,9 @@
-//! Lines of a file: comments that nothing ends early, strings, and expressions broken where they are too
-//! long.
+//! Lines of a file: safe comments, strings, and line breaks in long expressions.
 
 /// Width of a line.
 const WIDTH: usize = 100;
 
-/// A text that stands in a comment: it neither ends it nor looks like the begin of another one.
+/// Text for a comment, without markers that end or begin one.
 #[must_use]
 pub fn comment_text(text: &str) -> String {
     text.replace("*/", "* /").replace("/*", "/ *")
@@ -27,7 +26,7 @@ pub fn string(text: &str) -> String {
     out
 }
 
-/// A comment before a declaration; an empty line parts paragraphs.
+/// A comment before a declaration; an empty line separates paragraphs.
 #[must_use]
 pub fn documentation(paragraphs: &[String]) -> String {
     let mut out = String::from("/**\n");
@@ -41,7 +40,7 @@ pub fn documentation(paragraphs: &[String]) -> String {
     out
 }
 
-/// A comment of lines that stay as they are.
+/// A comment whose lines are not wrapped.
 #[must_use]
 pub fn verbatim(lines: &[String]) -> String {
     let mut out = String::from("/*\n");
@@ -53,7 +52,7 @@ pub fn verbatim(lines: &[String]) -> String {
     out
 }
 
-/// A line of code, with what does not fit on lines of their own that are indented more. It holds no string.
+/// A line of code without strings, with indented continuation lines.
 #[must_use]
 pub fn code(indent: usize, text: &str) -> String {
     let mut out = String::new();
@@ -67,7 +66,7 @@ pub fn code(indent: usize, text: &str) -> String {
     out
 }
 
-/// The words of a text on lines of at most `width` characters, or one word more than that.
+/// The words of a text on lines of at most `width` characters; longer words get their own line.
 fn filled(text: &str, width: usize) -> Vec<String> {
     let (mut lines, mut line) = (Vec::new(), String::new());
     for word in text.split(' ') {

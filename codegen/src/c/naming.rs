@@ -1,30 +1,30 @@
-//! What names begin with, and which names C has already.
+//! Prefixes of names, and reserved names of C.
 //!
-//! Everything that other files see begins with the robot's name: C has one scope for all. Names of values
-//! inside a function come from the derivation and, in parts, from the description: a joint called `os` has
-//! the cosine `cos`. Such a name is not given; the value gets its next name, or a number.
+//! All external names begin with the robot's name, because C has a single scope. Names of local
+//! values come from the derivation and partly from the description: a joint `os` has the cosine
+//! `cos`. Such reserved names are not used; the value gets its next name or a number.
 
 use crate::float::Float;
 
 /// The names of a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Naming {
-    /// What functions and types begin with, and the name of the files.
+    /// Prefix of functions and types, and the name of the files.
     pub prefix: String,
-    /// The numbers that are computed with, whose limits stand in texts of C.
+    /// The floating-point type, whose limits occur in C texts.
     pub float: Float,
 }
 
-/// Standard headers, and names of devices that are no files on some systems.
+/// Standard headers, and device names that cannot be file names on some systems.
 const NO_FILES: &str = "\
     assert aux complex con ctype errno fenv float inttypes iso646 limits locale math nul prn \
     setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn \
     string tgmath threads time uchar wchar wctype";
 
-/// What functions of the C library begin with, also those of the future (C99, 7.26).
+/// Prefixes reserved for functions of the C library, including future ones (C99, 7.26).
 const LIBRARY: [&str; 5] = ["is", "mem", "str", "to", "wcs"];
 
-/// Words of C up to C23, and names that a compiler may define.
+/// Keywords of C up to C23, and names that a compiler may define.
 const WORDS: &str = "\
     alignas alignof asm auto bool break case char const constexpr continue default do double \
     else enum errno extern false far float for fortran goto huge i386 if inline int interrupt \
@@ -32,7 +32,7 @@ const WORDS: &str = "\
     static_assert struct switch thread_local true typedef typeof typeof_unqual union unix \
     unsigned void volatile while";
 
-/// Functions of `math.h`, those of POSIX included; each also with `f` and `l` at its end.
+/// Functions of `math.h`, including those of POSIX; each also with the suffixes `f` and `l`.
 const MATH: &str = "\
     acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh drem erf erfc exp exp10 \
     exp2 expm1 fabs fdim finite floor fma fmax fmin fmod fpclassify frexp gamma hypot ilogb \
@@ -42,20 +42,20 @@ const MATH: &str = "\
     scalbln scalbn signbit signgam significand sin sincos sinh sqrt tan tanh tgamma trunc y0 \
     y1 yn";
 
-/// Macros of `math.h`, and of what it may include.
+/// Macros of `math.h`, and of headers that it may include.
 const MACROS: &str = "\
     DOMAIN EDOM EOF ERANGE INFINITY MAXFLOAT NAN NULL OVERFLOW PLOSS SING TLOSS UNDERFLOW \
     X_TLOSS double_t float_t math_errhandling";
 
-/// What other macros of `math.h` begin with.
+/// Prefixes of other macros of `math.h`.
 const MACRO_FAMILIES: [&str; 7] = ["FLT_", "FP_", "HUGE", "MATH_", "M_", "DBL_", "SNAN"];
 
-/// What the generated code calls by names of its own.
+/// Names that the generated code uses itself.
 const OWN: &str = "\
     error found_joints_error found_pose_error found_joints found_pose output unit_pose";
 
 impl Naming {
-    /// The names of a robot that is called `name`.
+    /// The names of a robot called `name`.
     #[must_use]
     pub fn new(name: &str) -> Self {
         let snake = snake_case(name);
@@ -85,8 +85,10 @@ impl Naming {
         format!("{}_{name}", self.prefix).to_ascii_uppercase()
     }
 
-    /// A text of ours in which `rob_` and `ROB_` stand for the robot's own prefix, and `LIMIT_` with a name for
-    /// a limit. No name of a description is in it, which may hold these letters, too.
+    /// Replaces `rob_` and `ROB_` in a text by the robot's prefix, and `LIMIT_` with a name by that
+    /// limit.
+    ///
+    /// The text must not contain names of a description, in which these letters may occur.
     #[must_use]
     pub fn apply(&self, text: &str) -> String {
         let upper = self.constant("");
@@ -109,7 +111,7 @@ impl Naming {
         text
     }
 
-    /// Whether a name can't be that of a value.
+    /// Whether a name is reserved and cannot be that of a value.
     #[must_use]
     pub fn is_reserved(&self, name: &str) -> bool {
         let stem = name.strip_suffix(['f', 'l']).unwrap_or(name);
@@ -130,7 +132,8 @@ fn holds(list: &str, word: &str) -> bool {
     list.split_ascii_whitespace().any(|one| one == word)
 }
 
-/// `FiveBar` is `five_bar`, `DualV` is `dualv`: a word begins with a capital before a small letter.
+/// Converts `FiveBar` to `five_bar` and `DualV` to `dualv`: a word starts with a capital before a
+/// small letter.
 fn snake_case(name: &str) -> String {
     let letters: Vec<char> = name.chars().collect();
     let mut out = String::new();

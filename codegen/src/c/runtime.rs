@@ -1,8 +1,8 @@
-//! What functions call that is no function of the robot: checks at their boundary and signs. The Rust functions
-//! have them from the runtime crate (`overact::guard`, `overact::math`), of which these are the counterparts,
-//! operation by operation.
+//! Helper functions of the generated code: checks of inputs, and signs.
 //!
-//! In the texts `rob_` and `ROB_` stand for the robot's prefix. Each is written where it is called.
+//! They correspond to those of the runtime crate (`overact::guard`, `overact::math`), operation by
+//! operation. In the texts, `rob_` and `ROB_` are placeholders of the robot's prefix. Only helpers
+//! that are called are written.
 
 const IS_FINITE: &str = include_str!("text/is_finite.c");
 const IS_WITHIN: &str = include_str!("text/is_within.c");
@@ -10,7 +10,7 @@ const UNIT_QUATERNION: &str = include_str!("text/unit_quaternion.c");
 const SIGN: &str = include_str!("text/sign.c");
 const SIGNED: &str = include_str!("text/signed.c");
 const WRAP_ANGLE: &str = include_str!("text/wrap_angle.c");
-/// All, each behind those that it calls, with the name that it is called by.
+/// All helpers, each after those that it calls, with the start of a call.
 const ALL: [(&str, &str); 6] = [
     ("is_finite(", IS_FINITE),
     ("is_within(", IS_WITHIN),
@@ -20,7 +20,7 @@ const ALL: [(&str, &str); 6] = [
     ("wrap_angle(", WRAP_ANGLE),
 ];
 
-/// Those that a code calls, whose names begin with a prefix.
+/// The helpers that a code with this prefix calls.
 #[must_use]
 pub fn needed(prefix: &str, code: &str) -> Vec<&'static str> {
     let is_called = |name: &str| code.contains(&format!("{prefix}_{name}"));

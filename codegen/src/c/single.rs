@@ -1,9 +1,9 @@
-//! The same code with numbers of 32 bits.
+//! Conversion of C code to single precision.
 //!
-//! `double` becomes `float`, a number gets the suffix `f` and the digits that it has then, and functions of `math.h`
-//! are those for `float`. Comments and strings stay as they are.
+//! `double` becomes `float`, numbers get the suffix `f` and fewer digits, and functions of `math.h`
+//! become those for `float`. Comments and strings do not change.
 
-/// Functions and macros of `math.h` that the code uses; `isfinite` serves all types.
+/// Functions and macros of `math.h` in the code; `isfinite` works for all types.
 const LIBRARY: [(&str, &str); 6] = [
     ("sqrt", "sqrtf"),
     ("sin", "sinf"),
@@ -13,7 +13,7 @@ const LIBRARY: [(&str, &str); 6] = [
     ("HUGE_VAL", "HUGE_VALF"),
 ];
 
-/// Code that computes with `float` where the given one does with `double`.
+/// Converts code with `double` to code with `float`.
 #[must_use]
 pub fn converted(code: &str) -> String {
     let mut out = String::with_capacity(code.len());
@@ -31,7 +31,7 @@ pub fn converted(code: &str) -> String {
     out
 }
 
-/// How long the first token of a text is: a comment, a string, a word, a number, or one character.
+/// Length of the first token of a text: a comment, a string, a word, a number, or one character.
 fn token(text: &str, first: char) -> usize {
     let until = |end: &str, begin: usize| {
         let found = text.get(begin..).and_then(|rest| rest.find(end));
@@ -46,7 +46,7 @@ fn token(text: &str, first: char) -> usize {
             end.unwrap_or(text.len())
         }
         '0'..='9' => {
-            // A sign behind an exponent belongs to the number.
+            // A sign after an exponent belongs to the number.
             let mut before = ' ';
             let end = text.find(|c: char| {
                 let goes_on = is_part(c) || (matches!(c, '+' | '-') && before == 'e');
@@ -59,7 +59,7 @@ fn token(text: &str, first: char) -> usize {
     }
 }
 
-/// How long the string at the begin of a text is.
+/// Length of the string at the start of a text.
 fn string(text: &str) -> usize {
     let mut is_escaped = false;
     let end = text.char_indices().skip(1).find(|&(_, c)| {
@@ -79,7 +79,7 @@ fn word(word: &str) -> &str {
     }
 }
 
-/// A number with a point or an exponent is rounded; others are counts.
+/// Rounds numbers with a point or an exponent; others are counts.
 fn number(text: &str) -> String {
     let value = text.contains(['.', 'e']).then(|| text.parse::<f64>().ok());
     match value.flatten() {

@@ -61,7 +61,7 @@ pub fn sizes(model: &RobotModel, naming: &Naming) -> String {
     format!("{lines}\n")
 }
 
-/// A table: its declaration, what it holds, and its elements.
+/// A table: its declaration, its description, and its elements.
 struct Table {
     /// Type and name as C declares them, without length.
     element: &'static str,
@@ -258,7 +258,7 @@ fn parameters(model: &RobotModel) -> Vec<Table> {
     tables
 }
 
-/// The types of tables and what is declared of them in the header.
+/// The types of tables, and their declarations in the header.
 #[must_use]
 pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
     let mut out = String::from(
@@ -296,7 +296,7 @@ pub fn definitions(model: &RobotModel, naming: &Naming) -> String {
             "const {} rob_{}[{}]",
             table.element, table.name, table.length
         );
-        // Names come from the description: the prefix is put into the head alone.
+        // Names come from the description, so the prefix is inserted in the head only.
         out += &naming.apply(&head);
         out += " = {\n";
         let last = table.elements.len() - 1;
@@ -309,10 +309,10 @@ pub fn definitions(model: &RobotModel, naming: &Naming) -> String {
     out
 }
 
-/// A number as C reads it: the same one.
+/// A number in C notation, of the same value.
 #[must_use]
 pub fn number(value: f64) -> String {
-    // A number that means nothing must not reach a user: this does not compile.
+    // A number that is not finite does not compile, so that it does not reach a user.
     match value.is_finite() {
         true => format!("{value:?}"),
         false => "internal_error_of_overact_a_constant_is_not_finite".to_owned(),

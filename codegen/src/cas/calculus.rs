@@ -8,7 +8,7 @@ use overact_exact::Number;
 use std::collections::BTreeSet;
 
 impl<'a> Expr<'a> {
-    /// The derivative with respect to a symbol, be it a number or an angle. Sign functions count as
+    /// Derivative with respect to a symbol, as a number or an angle. Sign functions count as
     /// constants.
     #[must_use]
     pub fn derivative(self, symbol: SymbolId) -> Expr<'a> {
@@ -21,8 +21,8 @@ impl<'a> Expr<'a> {
         }
     }
 
-    /// The symbols whose values the expression holds, in ascending order. Symbols that it holds as
-    /// angles are not among them.
+    /// Symbols that occur as numbers in the expression, in ascending order. Symbols that occur only
+    /// as angles are not included.
     #[must_use]
     pub fn symbols(self) -> Vec<SymbolId> {
         let symbol = |index: usize| match self.arena().op(index) {
@@ -33,7 +33,7 @@ impl<'a> Expr<'a> {
         symbols.into_iter().collect()
     }
 
-    /// Number of nodes that the expression is made of, constants and symbols left out.
+    /// Number of nodes in the expression without constants and symbols.
     #[must_use]
     pub fn size(self) -> usize {
         let is_work =
@@ -41,7 +41,7 @@ impl<'a> Expr<'a> {
         self.nodes().into_iter().filter(is_work).count()
     }
 
-    /// Indices of all nodes that the expression is made of.
+    /// Indices of all nodes in the expression.
     fn nodes(self) -> QuickSet<usize> {
         let mut seen = QuickSet::default();
         let mut open = vec![self.handle().index()];
@@ -267,7 +267,7 @@ mod tests {
         let hidden = (q + a).squared() - q.squared() - q * a * arena.integer(2);
         assert_eq!(hidden.symbols().len(), 2);
         assert_eq!(a.squared().symbols(), [arena.symbol("a")]);
-        // Written with the placeholder anyway, an expression is shared with its plain form.
+        // In an expression that contains the placeholder anyway, the plain form is shared.
         assert_eq!(hidden + q, a.squared() + q);
     }
 }

@@ -13,7 +13,7 @@ pub struct CosineSine<'a> {
 }
 
 impl<'a> CosineSine<'a> {
-    /// Those of the sum of two angles, by the addition theorem.
+    /// Cosine and sine of the sum of two angles, by the addition theorem.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         let ((ca, sa), (cb, sb)) = ((self.cosine, self.sine), (other.cosine, other.sine));
@@ -23,7 +23,7 @@ impl<'a> CosineSine<'a> {
         }
     }
 
-    /// Those of the negative angle.
+    /// Cosine and sine of the negative angle.
     #[must_use]
     pub fn negated(self) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl<'a> CosineSine<'a> {
         }
     }
 
-    /// The angle within half a turn of its value at home.
+    /// The angle, within half a turn of its value at home.
     #[must_use]
     pub fn angle_near(self, arena: &'a Arena, home: f64) -> Expr<'a> {
         let Self { cosine, sine } = self;
@@ -43,8 +43,9 @@ impl<'a> CosineSine<'a> {
 }
 
 impl Arena {
-    /// Cosine and sine of an angle. The signs of the angle and multiples of a right angle are taken
-    /// out, so that cos(x + 90 deg) is -sin(x).
+    /// Cosine and sine of an angle, reduced by its sign and by multiples of a right angle.
+    ///
+    /// For instance, cos(x + 90 deg) becomes -sin(x).
     pub fn cosine_and_sine(&self, direction: &Direction) -> CosineSine<'_> {
         if direction.is_constant() {
             let (cosine, sine) = direction.offset().cosine_and_sine();
@@ -77,7 +78,7 @@ impl Arena {
     }
 }
 
-/// Splits an angle into right angles (0 to 3) and a rest that is no multiple of one.
+/// Splits an angle into right angles (0 to 3) and a remainder that is no multiple of one.
 fn split_quarters(angle: Angle) -> (u8, Angle) {
     let (half_turns, radians) = angle.parts();
     let doubled = half_turns.times(Ratio::integer(2));

@@ -15,7 +15,7 @@ impl SymbolId {
     }
 }
 
-/// The direction of an angle Σ factor × symbol + constant.
+/// Angle Σ factor × symbol + constant.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Direction {
     /// Symbols in ascending order with factors that are not zero.
@@ -33,7 +33,7 @@ impl Direction {
         }
     }
 
-    /// The angle that a symbol is.
+    /// The angle that a symbol represents.
     #[must_use]
     pub fn symbol(symbol: SymbolId) -> Self {
         Self {

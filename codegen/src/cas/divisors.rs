@@ -1,12 +1,13 @@
-//! What expressions divide by.
+//! Divisors of expressions.
 
 use super::arena::{Arena, Handle, Op};
 use super::expr::Expr;
 use std::collections::BTreeSet;
 
 impl Arena {
-    /// What is divided by anywhere in some expressions, constants and what is never zero left out: each divisor
-    /// once, in the order in which they were built.
+    /// All divisors in some expressions, each once and in order of construction.
+    ///
+    /// Constants and expressions that are never zero are left out.
     #[must_use]
     pub fn divisors(&self, expressions: &[Expr<'_>]) -> Vec<Expr<'_>> {
         let mut stack: Vec<usize> = expressions.iter().map(|e| e.handle().index()).collect();

@@ -1,5 +1,5 @@
-//! Handles with operators: construction simplifies, so that zeros, ones and double negations never
-//! survive it.
+//! Expression handles with operators. Construction simplifies: zeros, ones and double negations
+//! vanish.
 
 use super::arena::{Arena, Handle, Op, negative_name};
 use overact_exact::Number;
@@ -13,7 +13,7 @@ pub struct Expr<'a> {
 }
 
 impl PartialEq for Expr<'_> {
-    /// Equality of meaning: two expressions are equal when they are the same node.
+    /// Semantic equality: two expressions are equal if they are the same node.
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self.arena, other.arena) && self.handle == other.handle
     }
@@ -48,14 +48,15 @@ impl<'a> Expr<'a> {
         self.as_number().is_some_and(Number::is_one)
     }
 
-    /// The constant that the expression is, if it is one.
+    /// The constant that equals the expression, if any.
     #[must_use]
     pub fn as_number(self) -> Option<Number> {
         self.arena.as_constant(self.handle)
     }
 
-    /// The expression, named for the reader of generated code. The name goes to the node, so a
-    /// negative expression's node is called `minus_…`.
+    /// The expression, with a name for readers of generated code.
+    ///
+    /// The name belongs to the node, so the node of a negative expression is called `minus_…`.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         if self.is_negative() {
@@ -125,7 +126,7 @@ impl<'a> Expr<'a> {
         self.with(self.handle.positive())
     }
 
-    /// The expression as constant × base, where the base is no such product.
+    /// The expression as constant × base; the base has no constant factor.
     #[must_use]
     pub fn factor_and_base(self) -> (Number, Self) {
         let sign = if self.is_negative() {
@@ -162,7 +163,7 @@ impl<'a> Expr<'a> {
         }
     }
 
-    /// The sum of two expressions of which neither is negated.
+    /// The sum of two expressions, neither of them negated; `negative` subtracts the second.
     fn sum(self, other: Self, negative: bool) -> Self {
         let (fa, a) = self.factor_and_base();
         let (fb, b) = other.factor_and_base();
@@ -170,7 +171,7 @@ impl<'a> Expr<'a> {
         if a == b {
             return self.arena.number(fa + fb) * a;
         }
-        // A common factor is pulled out: c x + c y = c (x + y).
+        // Factor out a common constant: c x + c y = c (x + y).
         if !fa.is_one() && (fa == fb || fa == -fb) {
             let inner = if fa == fb { a + b } else { a - b };
             return self.arena.number(fa) * inner;
@@ -252,7 +253,7 @@ impl<'a> Mul for Expr<'a> {
         let negative = self.is_negative() != other.is_negative();
         let (fa, a) = self.abs_node().factor_and_base();
         let (fb, b) = other.abs_node().factor_and_base();
-        // Two constants become one; a single one stays where the author put it.
+        // Two constants are merged; a single one keeps its place in the product.
         let product = if !fa.is_one() && !fb.is_one() {
             (a * b).scale(fa * fb)
         } else {
@@ -272,8 +273,8 @@ impl<'a> Mul<Number> for Expr<'a> {
 
 impl<'a> Div for Expr<'a> {
     type Output = Self;
-    /// The quotient. A divisor that is identically zero is the caller's error; the quotient then
-    /// evaluates to infinity or NaN.
+    /// The quotient. A divisor that is identically zero is an error of the caller; the quotient
+    /// then evaluates to infinity or NaN.
     fn div(self, other: Self) -> Self {
         if let Some(divisor) = other.as_number().filter(|d| !d.is_zero()) {
             return self.scale(Number::ONE / divisor);

@@ -1,4 +1,4 @@
-//! Whether a value is among many, asked of a small memory first.
+//! Bloom-like filter: a fast test that a value is not in a set.
 
 use super::field::Element;
 use super::hasher::FieldHasher;
@@ -7,11 +7,12 @@ use std::hash::{Hash, Hasher};
 /// Bits of a filter for each value.
 const FILTER_BITS: usize = 32;
 
-/// Tells in one access of a small memory that a value is not among many: a map of them lies in a large one,
-/// and its misses take most of the time where almost no value is there.
+/// Excludes, with one access to a small table, that a value is in a set.
+///
+/// The map of the values itself is large, and misses in it take most of the time if hits are rare.
 pub(crate) struct Filter {
     bits: Vec<u64>,
-    /// A hash is shifted by this to be the number of a bit.
+    /// Shift that turns a hash into a bit number.
     shift: u32,
 }
 
@@ -30,7 +31,7 @@ impl Filter {
         filter
     }
 
-    /// Whether the value may be among them; some that are not may be, too.
+    /// Whether the value may be in the set; false positives occur.
     pub(crate) fn may_hold(&self, value: &Element) -> bool {
         let (word, bit) = self.place(value);
         self.bits[word] & bit != 0

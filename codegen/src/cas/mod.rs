@@ -1,15 +1,15 @@
-//! A small computer algebra: expressions that know what they mean.
+//! A small computer algebra system that shares expressions by meaning.
 //!
 //! An [`Arena`] owns a graph of nodes; an [`Expr`] is a `Copy` handle that carries its arena, so
-//! `x * x + c` is Rust. Every node is held once. What makes the algebra strong is that it shares by
-//! *meaning* and not by shape: each node is evaluated, as it is built, at two random points of a
-//! prime field ([`field`]), where robots' constants, sines and cosines are exact. A node whose value
-//! is zero is zero, whatever identity made it so (c² + s² - 1 never enters the graph); a node whose
-//! value is known is the node that has it; a node whose ratio to another one is the same rational at
-//! both points is that one, scaled. Each such find is confirmed by a floating-point sample.
+//! `x * x + c` is Rust. Every node exists once. Nodes are shared by *meaning*, not by shape: as it
+//! is built, each node is evaluated at two random points of a prime field ([`field`]). There, the
+//! constants, sines and cosines of robots are exact. A node of value zero is zero, whatever the
+//! identity (c² + s² - 1 never enters the graph). A node whose value is known is replaced by the
+//! existing node. A node whose ratio to another is the same rational at both points becomes a
+//! multiple of it. A floating-point sample confirms each of these identities.
 //!
-//! Negation costs nothing and is a bit of the handle, as in and-inverter graphs. Constants are
-//! [`Number`]s, folded exactly; angles are linear combinations of symbols with an exact [`Angle`],
+//! Negation is a bit of the handle, as in and-inverter graphs, and costs nothing. Constants are
+//! [`Number`]s, folded exactly. Angles are linear combinations of symbols with an exact [`Angle`],
 //! so frames about parallel axes merge into one sine and cosine.
 //!
 //! The module knows nothing about robots.

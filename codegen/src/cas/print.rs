@@ -1,4 +1,4 @@
-//! Expressions as text, for people, tests and snapshots.
+//! Expressions as text, for debugging, tests and snapshots.
 
 use super::arena::{Arena, Handle, Op};
 use super::direction::Direction;

@@ -1,7 +1,7 @@
-//! Floating-point samples that confirm what the field finds.
+//! Floating-point samples that confirm identities found in the field.
 //!
-//! A sample is a complex number, so that the square root of a negative value has one too and every
-//! identity of square roots can be confirmed, wherever the random point lies.
+//! Samples are complex numbers: square roots of negative values exist, so identities of square
+//! roots can be confirmed at any random point.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -47,7 +47,7 @@ impl Sample {
         }
     }
 
-    /// Whether two samples of what the field calls equal agree to rounding. NaN agrees with nothing.
+    /// Whether two samples agree up to rounding. NaN agrees with nothing.
     pub(crate) fn agrees(self, other: Self) -> bool {
         (self - other).size() <= 1e-6 * (1e-6 + self.size().max(other.size()))
     }

@@ -1,4 +1,4 @@
-//! Random numbers that are the same at every run and on every machine.
+//! Pseudo-random numbers that are equal in every run and on every machine.
 
 use super::field::mix;
 
@@ -18,7 +18,7 @@ impl Stream {
         self.0 = mix(self.0);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
-    /// The next whole number below a bound, zero for none.
+    /// The next integer below a bound; zero for bound zero.
     pub fn below(&mut self, bound: usize) -> usize {
         self.0 = mix(self.0);
         ((u128::from(self.0) * bound as u128) >> 64) as usize

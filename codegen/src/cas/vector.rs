@@ -82,7 +82,7 @@ impl<'a> Matrix3<'a> {
         Self(std::array::from_fn(|i| Vector3::unit(arena, i).0))
     }
 
-    /// Whether it mixes these components of a vector among themselves alone, and the others among themselves.
+    /// Whether the matrix maps these components among themselves, and the others among themselves.
     #[must_use]
     pub(crate) fn keeps(&self, own: &[usize]) -> bool {
         let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
@@ -90,7 +90,7 @@ impl<'a> Matrix3<'a> {
         across.all(|(i, j)| self.0[i][j].is_zero())
     }
 
-    /// Whether it exchanges the components of a vector and their signs and does nothing else.
+    /// Whether the matrix is a signed permutation.
     #[must_use]
     pub(crate) fn exchanges(&self) -> bool {
         let entries = || self.0.iter().flatten().filter(|entry| !entry.is_zero());

@@ -1,4 +1,4 @@
-//! The functions of a robot that are generated: those that are wanted, and what they call.
+//! The functions of a robot to generate: those requested and those that they call.
 
 use super::group::serves_model;
 use crate::derivation::{FunctionForm, JointsBy, MotionInput};
@@ -6,19 +6,19 @@ use crate::mechanism::Mechanism;
 use overact_core::Function;
 use std::collections::BTreeSet;
 
-/// The functions of a robot that are generated.
+/// The functions of a robot to generate.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Chosen {
     /// The functions.
     pub(crate) functions: BTreeSet<FunctionForm>,
-    /// Whether forward kinematics is among them.
+    /// Whether forward kinematics is included.
     pub(crate) forward: bool,
-    /// Whether all are among them that `overact::Model` is asked for.
+    /// Whether all functions of `overact::Model` are included.
     pub(crate) is_model: bool,
 }
 
 impl Chosen {
-    /// All of an inventory.
+    /// All functions of an inventory.
     pub(crate) fn all(inventory: &[FunctionForm]) -> Self {
         Self {
             functions: inventory.iter().copied().collect(),
@@ -27,7 +27,7 @@ impl Chosen {
         }
     }
 
-    /// Adds what the functions call.
+    /// Adds the functions that these call.
     pub(super) fn complete(
         &mut self,
         mechanism: &Mechanism,

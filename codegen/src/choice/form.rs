@@ -1,4 +1,4 @@
-//! Which forms of the named functions a robot is given: from what they are evaluated, with which columns.
+//! Forms of the named functions: their inputs and columns.
 
 use super::group::Group;
 use super::name::{Meant, meant, reason};
@@ -6,17 +6,17 @@ use crate::derivation::{FunctionForm, MotionInput, function_name};
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Extent, Function};
 
-/// A name that a robot has no function for.
+/// A name without a function in this robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Missing {
-    /// What the robot has not got: `has no function ...`.
+    /// The missing function: `has no function ...`.
     pub(crate) sentence: String,
-    /// A way out.
+    /// A remedy.
     pub(crate) help: String,
 }
 
 impl Missing {
-    /// Columns that are chosen where no function has any.
+    /// Columns were requested, but no function has any.
     pub(crate) fn of_known_parameters() -> Self {
         Self {
             sentence: "has the numbers of its parameters in it, and no function with columns or \
@@ -26,7 +26,7 @@ impl Missing {
         }
     }
 
-    /// With the way out that always leads on.
+    /// With the general remedy.
     fn of(sentence: String) -> Self {
         Self {
             sentence,
@@ -35,19 +35,19 @@ impl Missing {
     }
 }
 
-/// The forms that are wanted of a robot with this inventory.
+/// The requested forms of a robot with this inventory.
 pub(super) struct Forms<'a> {
     pub(super) mechanism: &'a Mechanism,
     pub(super) tree: bool,
-    /// None for each function's own.
+    /// Empty for each function's default.
     pub(super) from: &'a [MotionInput],
     pub(super) columns: Option<Columns>,
     pub(super) inventory: &'a [FunctionForm],
 }
 
 impl Forms<'_> {
-    /// Whether functions may be evaluated from this. The state of a tree are its joints, whatever they are
-    /// called.
+    /// Whether functions may be evaluated from this input. The state of a tree is its joints, in
+    /// any case.
     pub(super) fn has_source(&self, from: MotionInput) -> bool {
         self.tree || self.from.is_empty() || self.from.contains(&from)
     }
@@ -57,7 +57,7 @@ impl Forms<'_> {
         self.has_source(form.from) && kind(form.function).is_none_or(is_wanted)
     }
 
-    /// All functions of the robot in these forms.
+    /// All functions of the robot in the requested forms.
     ///
     /// # Errors
     /// No function has one of these forms.
@@ -70,10 +70,10 @@ impl Forms<'_> {
         }
     }
 
-    /// What a name stands for.
+    /// The functions of a name.
     ///
     /// # Errors
-    /// A function that this robot has not got in the form that is wanted.
+    /// A function that this robot does not have in the requested form.
     pub(super) fn wanted(
         &self,
         name: &str,
@@ -108,7 +108,7 @@ impl Forms<'_> {
             .collect()
     }
 
-    /// Groups name plain forms with standard columns, which stand for those that are wanted instead.
+    /// Groups contain plain forms with standard columns, which represent the requested forms.
     fn is_of(&self, group: Group, form: FunctionForm) -> bool {
         let function = match self.columns {
             Some(Columns::Base) => with(form.function, Columns::Standard).unwrap_or(form.function),
@@ -122,7 +122,7 @@ impl Forms<'_> {
         }
     }
 
-    /// The forms of a function that is named, by itself or with a form of its own.
+    /// The forms of a named function, or of one named with its form.
     fn form(&self, name: &str, form: FunctionForm) -> Result<Vec<FunctionForm>, Missing> {
         let FunctionForm { function, from } = form;
         let is_base = function.is_of_base_parameters();
@@ -165,7 +165,7 @@ impl Forms<'_> {
         }
     }
 
-    /// Why a function is not there: not at all, or not from this.
+    /// Why a function is missing: entirely, or for this input.
     fn absent(&self, name: &str, function: Function) -> Missing {
         let others = self
             .inventory
@@ -183,7 +183,7 @@ impl Forms<'_> {
         }
     }
 
-    /// What was asked for.
+    /// The requested forms, in words.
     fn described(&self) -> String {
         let columns = self.columns.map(|c| format!("with {} columns", c.name()));
         let sources = (!self.from.is_empty()).then(|| self.sources());
@@ -197,7 +197,8 @@ impl Forms<'_> {
     }
 }
 
-/// Standard or base: of its columns, or of the parameters whose values it takes. A payload's columns are its own.
+/// Standard or base: the type of its columns or of its parameter input. A payload's columns are
+/// separate.
 fn kind(function: Function) -> Option<Columns> {
     match function.extents().1 {
         Some(Extent::PayloadParameters) => None,

@@ -1,4 +1,4 @@
-//! Groups of functions by what they are for.
+//! Groups of functions by purpose.
 
 use crate::derivation::MotionInput;
 use crate::mechanism::Mechanism;
@@ -9,7 +9,7 @@ use overact_core::{Columns, Function};
 pub enum Group {
     /// Pose from actuators, twist, inverse dynamics with internal torques, mass matrix and bias.
     Control,
-    /// What `overact::Model` is asked for, and all forms of the identification models from the pose.
+    /// The functions of `overact::Model`, and all forms of the identification models from the pose.
     Identification,
     /// Positions, rates and Jacobians, in all forms.
     Kinematics,
@@ -29,7 +29,7 @@ impl Group {
         }
     }
 
-    /// Whether a form of a function is one of the group, where no other forms are asked for.
+    /// Whether a form of a function belongs to the group, by default.
     pub(super) fn has(self, mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
         let is_plain = from == plain(mechanism);
         match self {
@@ -83,7 +83,7 @@ const fn is_kinematic(function: Function) -> bool {
     )
 }
 
-/// From what functions are evaluated that are given plain states.
+/// Input of functions for plain states.
 fn plain(mechanism: &Mechanism) -> MotionInput {
     if mechanism.is_tree() {
         MotionInput::Joints
@@ -92,7 +92,7 @@ fn plain(mechanism: &Mechanism) -> MotionInput {
     }
 }
 
-/// Whether identification and simulation ask a model for a function, or it serves to find pose and joints.
+/// Whether identification and simulation use a function of a model, or it computes pose and joints.
 #[must_use]
 pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
     match function {

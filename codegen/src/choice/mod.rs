@@ -1,8 +1,8 @@
-//! Which functions of a robot are wanted, by name or by what they are for, and what those need.
+//! Choice of a robot's functions by name or purpose, with the functions that they call.
 //!
-//! A controller takes a few functions of dozens. Names are those of the generated functions, those of the
-//! table of functions (which may stand for several forms), or of a [`Group`]. What a function calls comes
-//! along: forward kinematics with what it iterates on, Newton's method with the closure of the legs.
+//! A controller needs a few functions of dozens. Names are those of generated functions, those in
+//! the function table (which may have several forms), or those of a [`Group`]. Called functions are
+//! included: forward kinematics with its steps, Newton's method with the closure of the legs.
 
 mod chosen;
 mod form;
@@ -20,22 +20,22 @@ use form::Forms;
 use name::{Meant, help, meant};
 use overact_core::Columns;
 
-/// Functions that are wanted, and in which forms.
+/// The requested functions and their forms.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Choice {
-    /// None for all functions.
+    /// Empty for all functions.
     names: Vec<String>,
-    /// None for each function's own.
+    /// Empty for each function's default.
     from: Vec<MotionInput>,
     columns: Option<Columns>,
 }
 
 impl Choice {
-    /// Functions by their names, and groups.
+    /// Functions by name, and groups.
     ///
     /// # Errors
-    /// All names that no robot's function has; an empty list, which would leave nothing, as one of an empty
-    /// name.
+    /// All names that no robot's function has; also an empty list, which would select nothing, as
+    /// an error with an empty name.
     pub fn new<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, Vec<UnknownFunction>> {
         let names: Vec<String> = names
             .into_iter()
@@ -68,45 +68,48 @@ impl Choice {
         }
     }
 
-    /// All functions, until forms of them are chosen.
+    /// All functions, in all forms unless restricted.
     #[must_use]
     pub fn all() -> Self {
         Self::default()
     }
 
-    /// Of the functions the forms that are evaluated from these. A function that is named without its form,
-    /// as `inverse_dynamics`, is meant in each of them that it has; what is called comes along in whichever form.
-    /// A robot without a platform has its joints for a pose, and one form of everything.
+    /// Restricts the functions to forms that are evaluated from these inputs.
+    ///
+    /// A function named without its form, such as `inverse_dynamics`, is included in each of these
+    /// forms. Called functions are included in any form. A robot without a platform has one form of
+    /// each function, since its joints are its pose.
     #[must_use]
     pub fn evaluated_from(mut self, from: impl IntoIterator<Item = MotionInput>) -> Self {
         self.from = from.into_iter().collect();
         self
     }
 
-    /// Of the functions those with these columns, or that take the values of these parameters; others, which
-    /// have to do with neither, stay. A function that is named without its columns, as `inverse_dynamics`, is
-    /// meant with these.
+    /// Restricts the functions to those with these columns, or with these parameters as input.
+    ///
+    /// Functions with neither stay. A function named without its columns, such as
+    /// `inverse_dynamics`, means that with these.
     #[must_use]
     pub fn with_columns(mut self, columns: Columns) -> Self {
         self.columns = Some(columns);
         self
     }
 
-    /// The names as they were given; none where all functions are wanted.
+    /// The names as given; empty for all functions.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The columns that are wanted, where these are chosen.
+    /// The requested columns, if any.
     pub(crate) fn columns(&self) -> Option<Columns> {
         self.columns
     }
 
-    /// The functions of a robot with this inventory that are wanted, and what they need.
+    /// The requested functions of a robot with this inventory, and those that they need.
     ///
     /// # Errors
-    /// Every name that this robot has no function for, at least in the form that is wanted.
+    /// Every name without a function in this robot in the requested form.
     pub(crate) fn of_robot(
         &self,
         mechanism: &Mechanism,
@@ -183,7 +186,7 @@ mod tests {
         assert_eq!(Choice::new([]).expect_err("nothing").len(), 1);
     }
 
-    /// Names of the functions that are generated of a robot of the library, or what is said instead.
+    /// Names of the functions generated for a robot of the library, or the error.
     fn generated(robot: &str, choice: &Choice) -> Result<Vec<String>, String> {
         let text = match robot {
             "emps" => include_str!("../../../robots/emps.toml"),
@@ -228,7 +231,7 @@ mod tests {
             control.contains(&"inverse_jacobian".to_owned()),
             "{control:?}"
         );
-        // The state of a robot without a platform are its joints, whatever they are called.
+        // The state of a robot without a platform is its joints, in any case.
         let tree = named("inverse_dynamics").evaluated_from([MotionInput::Pose]);
         assert_eq!(
             generated("emps", &tree),

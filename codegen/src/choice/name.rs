@@ -1,4 +1,4 @@
-//! What names of functions stand for.
+//! Meaning of function names.
 
 use super::group::Group;
 use crate::derivation::{FunctionForm, MotionInput, function_name, sources};
@@ -6,28 +6,28 @@ use overact_core::{Condition, Function};
 use overact_description::diagnostic::did_you_mean;
 use std::fmt;
 
-/// The name of forward kinematics, which is no function of the table: it iterates.
+/// Name of forward kinematics, which is not in the function table because it iterates.
 const FORWARD: &str = "pose_from_actuators";
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meant {
     Group(Group),
     Forward,
     /// The function of exactly this name.
     Form(FunctionForm),
-    /// A function of the table in all its forms.
+    /// A function of the function table in all its forms.
     Forms(Function),
 }
 
 /// A name that no function of any robot has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownFunction {
-    /// Its place in the list that was given.
+    /// Index in the given list.
     pub index: usize,
     /// The name.
     pub name: String,
-    /// A way out.
+    /// A remedy.
     pub help: String,
 }
 
@@ -37,7 +37,7 @@ impl fmt::Display for UnknownFunction {
     }
 }
 
-/// All names that a function has in a robot with or without platform.
+/// The meaning of a name, for a robot with or without a platform.
 pub(super) fn meant(name: &str, tree: bool) -> Option<Meant> {
     if let Some(group) = Group::ALL.into_iter().find(|group| group.name() == name) {
         return Some(Meant::Group(group));
@@ -52,12 +52,12 @@ pub(super) fn meant(name: &str, tree: bool) -> Option<Meant> {
             }
         }
     }
-    // Forms of both columns have one name; those of standard ones come first.
+    // Forms of both columns have one name; those with standard columns come first.
     let found = Function::ALL.into_iter().find(|f| f.name() == name)?;
     Some(Meant::Forms(found))
 }
 
-/// A name that is near, or all groups and where the names are.
+/// A similar name, or all groups and where the names are listed.
 pub(super) fn help(name: &str) -> String {
     let groups = Group::ALL.map(Group::name);
     let functions = Function::ALL.into_iter().flat_map(|function| {
@@ -78,7 +78,7 @@ pub(super) fn help(name: &str) -> String {
     })
 }
 
-/// Why a robot has not got a function.
+/// Why a robot does not have a function.
 pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
     let (Meant::Form(FunctionForm { function, .. }) | Meant::Forms(function)) = meant else {
         return "";

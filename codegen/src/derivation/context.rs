@@ -1,4 +1,4 @@
-//! The context in which a function is derived: the robot, the inputs that were used, and the conditions that arose.
+//! Context in which a function is derived: the robot, the inputs used, and the guards that arise.
 
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
@@ -11,15 +11,15 @@ use crate::derivation::robot::Robot;
 use crate::mechanism::Mechanism;
 use overact_core::ActuatorGroup;
 
-/// Whose parameters have values, in what is linear in them.
+/// The bodies whose parameters have values in expressions that are linear in the parameters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// All of the robot's.
+    /// All bodies of the robot.
     #[default]
     Robot,
-    /// Those of this leg; all others are zero.
+    /// The bodies of this leg; all other parameters are zero.
     Leg(usize),
-    /// Those of the platform and the payload; all others are zero.
+    /// The platform and the payload; all other parameters are zero.
     Platform,
 }
 
@@ -36,21 +36,21 @@ impl Owner {
     }
 }
 
-/// The context of a function that is derived.
+/// Context in which one function is derived.
 pub(super) struct DerivationContext<'a, 's> {
     pub(super) robot: Robot<'a>,
     pub(super) selection: &'s Selection,
     pub(super) from: MotionInput,
-    /// The independent velocities that follow from the actuators'.
+    /// Independent velocities computed from those of the actuators.
     pub(super) twist: Vec<Expr<'a>>,
     pub(super) inputs: Vec<(&'static str, usize)>,
-    /// Whose parameters have values.
+    /// The bodies whose parameters have values.
     pub(super) owner: Owner,
     pub(super) guards: Vec<Guard<'a>>,
 }
 
 impl<'a, 's> DerivationContext<'a, 's> {
-    /// Derives the robot; `still` are coordinates of the pose that are known to be zero.
+    /// Derives the robot; `still` are pose coordinates that are known to be zero.
     ///
     /// # Errors
     /// See [`Robot::new`].
@@ -91,12 +91,13 @@ impl<'a, 's> DerivationContext<'a, 's> {
         self.robot.inputs(name, count)
     }
 
-    /// The twist or acceleration zero.
+    /// A zero twist or acceleration.
     pub(super) fn zeros(&self) -> Vec<Expr<'a>> {
         vec![self.robot.arena.zero(); self.robot.mechanism.dof()]
     }
 
-    /// The determinants of the actuators' rows, which decide whether they determine the platform's motion.
+    /// Guards the determinants of the actuators' rows, which are zero if they do not determine the
+    /// motion.
     pub(super) fn guard_platform(&mut self, values: &[Expr<'a>], actuators: ActuatorGroup) {
         for value in values {
             let (_, base) = value.factor_and_base();
@@ -115,7 +116,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
     }
 }
 
-/// The inputs from which sines and cosines of the configuration are had.
+/// The inputs that determine sines and cosines of the configuration.
 fn configuration_inputs(robot: &Robot<'_>, from: MotionInput) -> Vec<(&'static str, usize)> {
     let joints = ("joints", robot.mechanism.joints().len());
     let pose = ("pose", robot.mechanism.pose_len());

@@ -1,14 +1,14 @@
-//! A function of the table with the motion from which it is evaluated.
+//! A function of the function table and the motion from which it is evaluated.
 
 use super::motion_input::MotionInput;
 use overact_core::Function;
 
-/// A function of the table and the motion from which it is evaluated.
+/// A function of the function table and the motion from which it is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FunctionForm {
     /// The function.
     pub function: Function,
-    /// The input of the function that gives the configuration.
+    /// The input that determines the configuration.
     pub from: MotionInput,
 }
 

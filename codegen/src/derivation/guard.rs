@@ -1,52 +1,54 @@
-//! Conditions for a function to have a value.
+//! Guards: conditions that a function checks before it divides or takes a root.
 
 use crate::cas::Expr;
 use overact_core::ActuatorGroup;
 
-/// A quantity that must stay away from a bound for the model to have a value.
+/// A value and the condition that it has to satisfy.
 #[derive(Debug, Clone)]
 pub struct Guard<'a> {
     /// The quantity.
     pub value: Expr<'a>,
-    /// What it means.
+    /// The meaning of the condition.
     pub kind: GuardKind,
     /// Name of the leg.
     pub leg: String,
 }
 
-/// The kinds of guards.
+/// The meaning of a guard's condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GuardKind {
-    /// Negative: the pose is out of reach. Near zero compared with this value at home: the leg is singular.
+    /// Negative: the pose is out of reach. Near zero relative to this value at home: the leg is
+    /// singular.
     Reach(f64),
-    /// Near zero compared with this magnitude at home: the leg is singular.
+    /// Near zero relative to this magnitude at home: the leg is singular.
     Leg(f64),
-    /// Near zero compared with this magnitude at home: the actuators do not determine the platform's
+    /// Near zero relative to this magnitude at home: the actuators do not determine the platform's
     /// motion.
     Platform {
         /// The magnitude at home.
         home: f64,
-        /// Which actuators they are.
+        /// The actuators.
         actuators: ActuatorGroup,
     },
-    /// Farther from zero than this (m, rad): the pose is none that the leg allows.
+    /// Farther from zero than this (m, rad): the leg does not allow the pose.
     Closed(f64),
-    /// Near zero compared with this magnitude at home: the independent coordinates do not determine the
-    /// others.
+    /// Near zero relative to this magnitude at home: the independent coordinates do not determine
+    /// the others.
     Coordinates(f64),
     /// Not positive: the mass matrix is not positive definite.
     Mass,
 }
 
-/// A guard compares a value with its magnitude at home only as an order of magnitude, so the generated code states
-/// four significant digits of it.
+/// The magnitude at home with four significant digits, as the generated code states it.
+///
+/// A guard uses it only as an order of magnitude.
 #[must_use]
 pub fn rounded_magnitude(magnitude: f64) -> f64 {
     format!("{magnitude:.3e}").parse().unwrap_or(magnitude)
 }
 
 impl GuardKind {
-    /// The magnitude at home against which a value is small; none where the sign matters.
+    /// The magnitude at home to which a value is compared; `None` if only the sign matters.
     #[must_use]
     pub const fn home(&self) -> Option<f64> {
         match self {

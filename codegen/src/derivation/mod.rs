@@ -14,8 +14,8 @@
 //! | `forward` | forward kinematics and forward dynamics |
 //! | `functions` | the functions of the table, from inputs to outputs |
 //!
-//! The files beside them are shared: what a function is evaluated from, what was selected for a robot, guards, names.
-//! [`DerivationContext`](context::DerivationContext) holds one function while it is derived.
+//! Files in this folder itself are shared: inputs of functions, choices for a robot, guards, names.
+//! [`DerivationContext`](context::DerivationContext) holds the state of one function's derivation.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 

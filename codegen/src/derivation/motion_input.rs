@@ -1,18 +1,19 @@
-//! From which measured motion a function is evaluated.
+//! The measured motion from which a function is evaluated.
 
-/// What a model is evaluated from.
+/// The motion from which a model is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum MotionInput {
-    /// The platform's pose; joints follow from the closure.
+    /// The platform's pose; the closure gives the joints.
     Pose,
     /// The joint positions (and the pose, for the platform's orientation).
     Joints,
-    /// The pose that forward kinematics finds, with the actuators' velocities and accelerations.
+    /// The actuators: forward kinematics gives the pose, their rates give velocities and
+    /// accelerations.
     Actuators,
 }
 
 impl MotionInput {
-    /// All.
+    /// All inputs.
     pub const ALL: [Self; 3] = [Self::Pose, Self::Joints, Self::Actuators];
 
     /// `pose`, `joints` or `actuators`.
@@ -25,7 +26,7 @@ impl MotionInput {
         }
     }
 
-    /// What has this name.
+    /// The input of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|from| from.name() == name)

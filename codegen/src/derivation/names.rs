@@ -1,17 +1,18 @@
-//! Names for what has a meaning, so that generated code reads like the derivation: how they are made up.
+//! Names of intermediate values, which make generated code follow the derivation.
 //!
-//! A name is a statement about a value: it is given to whatever node has that value, however the search
-//! writes it, and to its negative as `minus_…`. Nothing here changes a program: what is named is not
-//! thereby needed. What only a reader would ask for is named in `naming`.
+//! A name belongs to a value: every node of that value gets it, in whatever form the search writes
+//! the value; the negative is called `minus_…`. Names do not change a program, since naming a value
+//! does not make it needed. `naming` has the names of quantities that the derivation itself does
+//! not use.
 
 use crate::cas::{Expr, Vector3};
 use crate::mechanism::{Leg, TwistCoordinate};
 
-/// The coordinate axes as parts of names.
+/// The coordinate axes in names.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Names to give. Of equal or opposite quantities the one that needs no `minus_` keeps its name, and
-/// among these the first.
+/// Names to assign. Among equal or opposite values, the first that needs no `minus_` keeps its
+/// name.
 #[derive(Debug, Default)]
 pub(super) struct Names<'a>(Vec<(Expr<'a>, String)>);
 
@@ -20,14 +21,14 @@ impl<'a> Names<'a> {
         self.0.push((value, name.into()));
     }
 
-    /// `what_x_where`, `what_y_where`, `what_z_where`.
+    /// Adds `what_x_where`, `what_y_where`, `what_z_where`.
     pub(super) fn vector(&mut self, vector: Vector3<'a>, what: &str, place: &str) {
         for (component, axis) in vector.0.iter().zip(AXES) {
             self.one(*component, joined(&[what, axis, place]));
         }
     }
 
-    /// Gives all names.
+    /// Assigns all names.
     pub(super) fn give(self) {
         let (negative, positive): (Vec<_>, Vec<_>) = self
             .0
@@ -39,7 +40,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The parts of a name that are not empty, joined by underscores.
+/// Joins the nonempty parts of a name by underscores.
 pub(super) fn joined(parts: &[&str]) -> String {
     let parts: Vec<&str> = parts
         .iter()
@@ -49,7 +50,7 @@ pub(super) fn joined(parts: &[&str]) -> String {
     parts.join("_")
 }
 
-/// `vx` or `wz`: a twist coordinate as a part of a name.
+/// Label of a twist coordinate: `vx` or `wz`.
 pub(super) fn coordinate_label(coordinate: &TwistCoordinate) -> String {
     match coordinate {
         TwistCoordinate::Linear(axis) => format!("v{}", AXES[*axis]),
@@ -57,15 +58,16 @@ pub(super) fn coordinate_label(coordinate: &TwistCoordinate) -> String {
     }
 }
 
-/// Of which accelerations a motion is: those of the robot, or those that are left when the independent
-/// ones are zero, whose names say `bias`.
+/// Whether accelerations are those of the robot, or the bias at zero independent accelerations.
+///
+/// Names of the latter contain `bias`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accelerations {
     are_bias: bool,
 }
 
 impl Accelerations {
-    /// The motion of these independent accelerations.
+    /// The kind of a motion with these independent accelerations.
     pub(super) fn new(independent: &[Expr<'_>]) -> Self {
         Self {
             are_bias: independent.iter().all(|a| a.is_zero()),
@@ -90,7 +92,7 @@ impl Accelerations {
     }
 }
 
-/// The entries of a matrix, `what_row_column`.
+/// Names the entries of a matrix `what_row_column`.
 pub(super) fn name_matrix<'a>(matrix: &[Vec<Expr<'a>>], what: &str) {
     let mut names = Names::default();
     for (i, row) in matrix.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The standard parameters of a robot: which there are, and in which order their columns stand.
+//! The standard parameters of a robot and the order of their columns.
 
 use crate::mechanism::{Mechanism, StandardParameter};
 
@@ -21,8 +21,8 @@ pub enum BodyParameter {
 }
 
 impl BodyParameter {
-    /// All parameters that the description does not declare absent, in column order: leg by leg, body
-    /// by body, then the platform's.
+    /// All parameters that are not absent, in column order: leg by leg, body by body, then the
+    /// platform's.
     #[must_use]
     pub fn all(mechanism: &Mechanism) -> Vec<Self> {
         let mut parameters = Vec::new();
@@ -37,7 +37,7 @@ impl BodyParameter {
         parameters
     }
 
-    /// The name, `zz_2_leg3`, `m_platform` or `m_payload`.
+    /// Name of the parameter: `zz_2_leg3`, `m_platform` or `m_payload`.
     #[must_use]
     pub fn name(self, mechanism: &Mechanism) -> String {
         match self {
@@ -47,7 +47,7 @@ impl BodyParameter {
         }
     }
 
-    /// Which of the standard parameters it is.
+    /// The standard parameter of the body or joint.
     #[must_use]
     pub const fn symbol(self) -> StandardParameter {
         match self {

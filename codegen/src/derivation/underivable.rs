@@ -3,33 +3,33 @@
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, InternalError};
 
-/// Why a model cannot be derived in the wanted form.
+/// The reason why a model cannot be derived in the requested form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Underivable {
-    /// No rule gives this leg's joints from the pose in closed form.
+    /// No rule solves this leg's joints from the pose in closed form.
     InverseKinematics {
         /// Name of the leg.
         leg: String,
     },
-    /// No rule gives the pose from the actuators in closed form.
+    /// No rule solves the pose from the actuators in closed form.
     ForwardKinematics,
     /// The leg's Jacobian has no structural inverse.
     SingularLeg {
         /// Name of the leg.
         leg: String,
     },
-    /// Something that the equations of a leg are divided by has no value at home.
+    /// A divisor in the equations of a leg has no value at home.
     SingularHome {
-        /// Name of the leg; of none if it is the platform's.
+        /// Name of the leg; empty for the platform.
         leg: String,
     },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
-    /// Functions were chosen that the robot has not got: for each a sentence, `has no function ...`, and a way
-    /// out.
+    /// Requested functions that the robot does not have: for each a sentence, `has no function
+    /// ...`, and a remedy.
     NotOffered(Vec<(String, String)>),
-    /// A function has a number in it that is too large or too small for the numbers that are computed with.
+    /// A function contains a number that its floating-point type cannot represent.
     Unrepresentable {
         /// Name of the function.
         function: String,

@@ -1,4 +1,4 @@
-//! What a function does before all else.
+//! Checks at the start of a generated function.
 
 use super::expression::magnitude;
 use crate::float::Float;
@@ -7,7 +7,7 @@ use crate::model::RobotModel;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// Refuses numbers that are not finite or too large.
+/// Rejects numbers that are not finite or too large.
 #[must_use]
 pub fn range(float: Float, arguments: &[&str]) -> TokenStream {
     let largest = float.limits().largest;
@@ -18,7 +18,7 @@ pub fn range(float: Float, arguments: &[&str]) -> TokenStream {
     quote!(::overact::guard::within(&[#(#bounded),*])?;)
 }
 
-/// Refuses numbers that are not finite or too large, and scales the quaternion of a pose to length 1.
+/// Rejects numbers that are not finite or too large, and normalises the quaternion of a pose.
 #[must_use]
 pub fn boundary(model: &RobotModel, arguments: &[Array]) -> TokenStream {
     let names: Vec<&str> = arguments.iter().map(|a| a.name.as_str()).collect();

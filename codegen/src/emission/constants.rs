@@ -181,7 +181,7 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
     }
 }
 
-/// The numbers that stand for the parameters.
+/// The values of known parameters.
 fn parameter_values(model: &RobotModel, values: &[(BodyParameter, f64)]) -> TokenStream {
     let entries = values.iter().map(|&(parameter, value)| {
         let base = model.base.iter().find(|base| base.parameter == parameter);

@@ -13,11 +13,11 @@ use std::ops::Range;
 pub struct Written {
     /// The assignments.
     pub statements: TokenStream,
-    /// The output; nothing where statements have written it.
+    /// The output; empty if the statements write it.
     pub value: TokenStream,
 }
 
-/// Statements and value of a body whose output is this, or is written by its statements.
+/// Statements and value of a body with this output, which the statements may write.
 #[must_use]
 pub(super) fn write(writer: &Writer<'_>, body: &Body, output: Option<&Array>) -> Written {
     let constants = constants(body, writer.float);
@@ -63,18 +63,18 @@ pub(super) fn ident(name: &str) -> Ident {
     Ident::new(name, Span::call_site())
 }
 
-/// Writes what a body is made of.
+/// Converts the expressions and statements of a body to tokens.
 pub(super) struct Writer<'a> {
     inputs: &'a [Array],
     float: Float,
-    /// The module of the functions that are called.
+    /// Path of the module of called functions.
     math: TokenStream,
-    /// What functions of two numbers are told besides: of which legs they are.
+    /// Additional argument of functions of two numbers: the mask of active legs.
     of_legs: TokenStream,
 }
 
 impl<'a> Writer<'a> {
-    /// Of a body with these inputs.
+    /// A writer for a body with these inputs.
     pub(super) fn new(inputs: &'a [Array], float: Float) -> Self {
         let math = match float {
             Float::F64 => quote!(::overact::math),
@@ -88,7 +88,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Of a body that is compiled for wider vectors, too.
+    /// A writer for a body that is also compiled for wider vectors.
     pub(super) fn wide(inputs: &'a [Array], float: Float) -> Self {
         let narrow = Self::new(inputs, float);
         match float {
@@ -100,7 +100,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Of what is computed in lanes.
+    /// A writer for values in lanes.
     pub(super) fn of_lanes(inputs: &'a [Array]) -> Self {
         Self {
             inputs,
@@ -276,8 +276,9 @@ fn sine_and_cosine(pair: &Pair) -> TokenStream {
     quote!((#sine, #cosine))
 }
 
-/// What stands in the generated code where a program breaks a rule that lowering guarantees: nothing that
-/// compiles, for a number that means nothing must not reach a user.
+/// Tokens for a violated invariant of lowering.
+///
+/// They do not compile, so that a meaningless number does not reach a user.
 fn internal_error(what: &str) -> TokenStream {
     let message = format!(
         "internal error of overact {}: {what}; please report it with the robot's description",
@@ -286,7 +287,7 @@ fn internal_error(what: &str) -> TokenStream {
     quote!(::core::compile_error!(#message))
 }
 
-/// The type of numbers.
+/// The floating-point type.
 #[must_use]
 pub fn kind(float: Float) -> TokenStream {
     match float {
@@ -295,14 +296,14 @@ pub fn kind(float: Float) -> TokenStream {
     }
 }
 
-/// A bound of magnitudes, a power of ten: with an exponent in the place of its zeros.
+/// A bound of magnitudes, a power of ten, in exponent notation.
 #[must_use]
 pub fn magnitude(value: f64) -> TokenStream {
     let literal = format!("{value:e}").parse();
     literal.unwrap_or_else(|_| internal_error("a bound is no number"))
 }
 
-/// A number that reads back as the same one, rounded to those that are computed with.
+/// A number in a notation that reads back as the same value, rounded to the floating-point type.
 #[must_use]
 pub fn number(value: f64, float: Float) -> TokenStream {
     if !float.holds(value) {

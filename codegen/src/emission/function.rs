@@ -1,7 +1,7 @@
 //! One generated function: documentation, signature, body.
 //!
-//! A model with a column for each parameter is written into a matrix that the caller hands in, by the function whose
-//! name ends with `_into`; the one without only hands in a matrix of its own.
+//! A model with a column for each parameter is written into the caller's matrix by the function
+//! with the suffix `_into`. The function without the suffix passes a matrix of its own.
 
 use super::boundary::boundary;
 use super::expression::{self, Writer, array_type, ident};
@@ -21,11 +21,11 @@ use quote::quote;
 pub struct Item {
     /// The function.
     pub tokens: TokenStream,
-    /// Where the sections of its body begin, which tokens cannot say.
+    /// Starts of the sections of its body, which tokens cannot represent.
     pub sections: Sections,
-    /// All names that its body assigns.
+    /// All names assigned in the body.
     pub names: Vec<String>,
-    /// Whether it comes twice, once for a matrix that is handed in.
+    /// Whether it exists twice, once for the caller's matrix.
     pub is_placed: bool,
 }
 
@@ -82,7 +82,7 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     both
 }
 
-/// The function with the statements of its program, behind others.
+/// The function with its program's statements after others.
 fn straight(
     model: &RobotModel,
     function: &CompiledFunction,
@@ -91,7 +91,7 @@ fn straight(
 ) -> Item {
     let program = &function.program;
     let labels = Labels::new(model, function);
-    // A word of Rust is no name that the derivation gives.
+    // Words of Rust are not among the derivation's names.
     let (body, output) = match outline.is_placed() {
         true => (
             Body::placed(program, &labels, &|name| name == "output"),
@@ -133,7 +133,7 @@ fn straight(
     }
 }
 
-/// Names of the columns, as the table of parameters has them.
+/// Names of the columns in the table of parameters.
 fn columns(model: &RobotModel, function: &CompiledFunction, table: Option<Table>) -> Vec<String> {
     if table == Some(Table::BaseParameters) {
         return model
@@ -148,8 +148,10 @@ fn columns(model: &RobotModel, function: &CompiledFunction, table: Option<Table>
         .collect()
 }
 
-/// Inputs as values, for what is written in between might stand in their place as far as the compiler knows: inside a
-/// closure it has forgotten that references are of different things.
+/// Copies of the inputs.
+///
+/// Inside a closure the compiler no longer knows that references do not alias, so values written in
+/// between might change the inputs.
 fn copies(program: &Program) -> TokenStream {
     let inputs = program.inputs.iter().zip(program.used_inputs());
     let used = inputs.filter(|(_, is_used)| *is_used);
@@ -161,13 +163,15 @@ fn copies(program: &Program) -> TokenStream {
     }
 }
 
-/// Operations from which on a straight function is compiled for wider vectors, too. Shorter ones gain no more than the
-/// question costs which of them are there.
+/// Operations above which a straight function is also compiled for wider vectors.
+///
+/// For shorter ones the detection of the processor's vectors costs more than they gain.
 const WIDE: usize = 150;
 
-/// Whether the straight program takes wider vectors where there are some. It does not where legs run side by side then,
-/// nor as a step of an iteration: positions and Jacobians wait for one root and quotient after the other, so that builds
-/// for wider vectors are no faster there.
+/// Whether the straight program uses wider vectors if available.
+///
+/// It does not if legs run in SIMD lanes then, nor as a step of an iteration. Positions and
+/// Jacobians are sequences of dependent roots and quotients, which wider vectors do not accelerate.
 fn is_wide(model: &RobotModel, function: &CompiledFunction) -> bool {
     let is_of_steps = matches!(
         function.computes,
@@ -182,7 +186,7 @@ fn is_wide(model: &RobotModel, function: &CompiledFunction) -> bool {
     function.lanes.is_none() && !is_of_steps && model.cost(function).once.operations() >= WIDE
 }
 
-/// The function with these statements and this value.
+/// The function with given statements and value.
 fn around(
     model: &RobotModel,
     function: &CompiledFunction,
@@ -237,7 +241,7 @@ fn around(
     }
 }
 
-/// The name of the function in which the statements stand.
+/// Name of the function that contains the statements.
 fn body_name(function: &CompiledFunction, outline: &Outline<'_>) -> String {
     match outline.is_placed() {
         true => into(&function.name),
@@ -245,12 +249,13 @@ fn body_name(function: &CompiledFunction, outline: &Outline<'_>) -> String {
     }
 }
 
-/// The name of a function that writes into a matrix which is handed in.
+/// Name of a function that writes into the caller's matrix.
 pub(super) fn into(name: &str) -> String {
     format!("{name}_into")
 }
 
-/// The call of a function with arguments of the names of its inputs, and of the output if it is handed in.
+/// Call of a function with variables named like its inputs, and the output if the caller provides
+/// it.
 fn call(function: &CompiledFunction, outline: &Outline<'_>) -> TokenStream {
     let name = ident(&body_name(function, outline));
     let inputs = function.program.inputs.iter();
@@ -259,7 +264,7 @@ fn call(function: &CompiledFunction, outline: &Outline<'_>) -> TokenStream {
     quote!(Self::#name(#(#inputs,)* #output))
 }
 
-/// Lines of documentation: meaning, inputs, output, errors, operations.
+/// Lines of documentation: description, inputs, output, errors, operations.
 fn documentation(
     model: &RobotModel,
     function: &CompiledFunction,

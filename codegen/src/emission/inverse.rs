@@ -1,4 +1,4 @@
-//! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
+//! Inverse kinematics of robots without closed form: Newton's method on the generated closure.
 
 use super::boundary::boundary;
 use crate::lowering::Array;

@@ -1,5 +1,7 @@
-//! Layout of a generated file: long arrays are filled line by line instead of one element per line, and
-//! the sections of long functions have a heading, which is a comment and so no token.
+//! Layout of a generated file: long arrays are packed into lines, and sections of long functions
+//! get headings.
+//!
+//! Headings are comments, which tokens cannot represent.
 
 /// Width of a line.
 const WIDTH: usize = 100;
@@ -9,14 +11,14 @@ const WIDTH: usize = 100;
 pub struct Sections {
     /// Name of the function.
     pub function: String,
-    /// For every section the first name that is assigned in it, and its heading.
+    /// For every section its first assigned name and its heading.
     pub starts: Vec<(String, String)>,
-    /// What the columns of a matrix stand for that is written number by number.
+    /// Parameters of the columns of a matrix that is written number by number.
     pub columns: Vec<String>,
 }
 
 impl Sections {
-    /// Of a function without sections.
+    /// A function without sections.
     #[must_use]
     pub fn none(function: &str) -> Self {
         Self {
@@ -27,15 +29,16 @@ impl Sections {
     }
 }
 
-/// Writes the headings of sections into formatted code, and names of columns behind their numbers; functions stand in the
-/// order of `sections`.
+/// Inserts headings of sections, and names of columns after their numbers, into formatted code.
+///
+/// Functions have the order of `sections`.
 #[must_use]
 pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
     let mut out = String::with_capacity(code.len());
     let mut left = sections.iter();
     let mut starts = [].iter().peekable();
     let mut columns: &[String] = &[];
-    // The column of a statement that has not ended.
+    // The column of an unfinished statement.
     let mut open: Option<&str> = None;
     for line in code.lines() {
         let text = line.trim_start();
@@ -60,8 +63,9 @@ pub(crate) fn with_comments(code: &str, sections: &[Sections]) -> String {
     out
 }
 
-/// The name of the column whose number a statement that begins so writes, unless the value has it in its own: of
-/// `output[0][9] = x * y;` that of column 9.
+/// The name of the column that a statement writes, unless the value contains it.
+///
+/// For `output[0][9] = x * y;` it is the name of column 9.
 fn unnamed<'c>(statement: &str, columns: &'c [String]) -> Option<&'c str> {
     let (place, value) = statement.strip_prefix("output[")?.split_once("] = ")?;
     let (_row, column) = place.split_once("][")?;
@@ -69,7 +73,7 @@ fn unnamed<'c>(statement: &str, columns: &'c [String]) -> Option<&'c str> {
     (!value.starts_with(&format!("{name}_on_"))).then_some(name)
 }
 
-/// Whether a statement begins by assigning this name, mutable or not, or this name beside another one.
+/// Whether a statement starts with an assignment to this name, alone or with another one.
 fn assigns(line: &str, name: &str) -> bool {
     let Some(rest) = line.strip_prefix("let ") else {
         return false;
@@ -82,12 +86,12 @@ fn assigns(line: &str, name: &str) -> bool {
     words.next() == Some(name) || (is_pair && words.next() == Some(name))
 }
 
-/// Packs the elements of arrays that the pretty printer has put on lines of their own.
+/// Packs array elements that the pretty printer has put on separate lines.
 #[must_use]
 pub(crate) fn pack_arrays(code: &str) -> String {
     let mut out = String::with_capacity(code.len());
     let mut inside = false;
-    // The line that is being filled, and its indentation.
+    // The line being filled, and its indentation.
     let mut open: Option<(String, usize)> = None;
     for line in code.lines() {
         let text = line.trim_start();
@@ -118,13 +122,13 @@ pub(crate) fn pack_arrays(code: &str) -> String {
     out
 }
 
-/// Puts the head of a closure that is inlined, which the pretty printer writes on three lines, on one, and its body where
-/// that of a block stands.
+/// Joins the head of an inlined closure, which the pretty printer writes on three lines, and
+/// indents its body like a block.
 #[must_use]
 pub(crate) fn join_closures(code: &str) -> String {
     let mut out = String::with_capacity(code.len());
     let mut lines = code.lines().peekable();
-    // The indentation of the call whose closure is open.
+    // Indentation of the call whose closure is open.
     let mut open: Option<usize> = None;
     while let Some(line) = lines.next() {
         let text = line.trim_start();
@@ -160,7 +164,7 @@ fn push_line(out: &mut String, line: &str) {
     out.push('\n');
 }
 
-/// Whether an element stands on this line as a whole.
+/// Whether this line contains a whole element.
 fn is_balanced(text: &str) -> bool {
     let count = |c: char| text.matches(c).count();
     count('(') == count(')') && count('[') == count(']') && count('{') == count('}')

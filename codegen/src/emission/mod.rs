@@ -1,13 +1,13 @@
-//! From a [`RobotModel`] to Rust.
+//! Rust code of a [`RobotModel`].
 //!
-//! Macro, build script, command line and `generated/` all come from [`robot()`]: one `impl` block with
-//! constants and flat functions, and one `impl overact::Model`, unless the parameters are known
-//! or functions were left out that it is asked for. Nothing is allocated, nothing panics,
-//! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
-//! code stands in scopes that are not ours.
+//! Macro, build script, command line and `generated/` all use [`robot()`]. It returns one `impl`
+//! block with constants and flat functions, and one `impl overact::Model`. The latter is missing if
+//! the parameters are known, or if functions that it needs were left out. The code does not
+//! allocate, does not panic and has no unsafe code. A singular configuration is an error that names
+//! the leg. Paths are absolute, because the code may be in any scope.
 //!
-//! The code is to be read beside the paper: `writing` names its values and explains the names in the type's
-//! documentation, and `layout` puts headings over the sections of a body.
+//! The code follows the paper: `writing` names its values and explains the names in the type's
+//! documentation, and `layout` adds headings to the sections of a body.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
@@ -31,15 +31,16 @@ use quote::quote;
 
 /// A robot as Rust.
 pub struct Robot {
-    /// Lines of documentation for its type: sizes, and what the names in the functions' bodies mean.
+    /// Lines of documentation for its type: sizes, and a legend of the names in the functions'
+    /// bodies.
     pub documentation: Vec<String>,
-    /// The items behind the type.
+    /// The items after the type.
     pub items: TokenStream,
-    /// Where the sections of the functions' bodies begin.
+    /// Starts of the sections of the functions' bodies.
     sections: Vec<Sections>,
 }
 
-/// The robot under the name of its type.
+/// The Rust code of a robot under the name of its type.
 #[must_use]
 pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let constants = constants::items(model);
@@ -49,8 +50,8 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let forward = model
         .forward_kinematics
         .then(|| model_impl::pose_from_actuators(model));
-    // The functions of a model take the parameters as an input, none that it is asked for is missing, and all
-    // compute with the numbers that identification has.
+    // Functions of an `overact::Model` take the parameters as an input, are complete, and have the
+    // floating-point type of the identification.
     let is_long = model.float == Float::F64;
     let is_model = model.selection.values.is_none() && model.is_model && is_long;
     let model_impl = is_model.then(|| model_impl::item(model, name));
@@ -97,7 +98,7 @@ pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
     robot(model, name).items
 }
 
-/// The type with its documentation, and its items: what a generated file holds.
+/// The documented type and its items: the content of a generated file.
 #[must_use]
 pub fn module(model: &RobotModel) -> TokenStream {
     module_and_sections(model).0
@@ -111,7 +112,7 @@ fn module_and_sections(model: &RobotModel) -> (TokenStream, Vec<Sections>) {
         sections,
     } = robot(model, &name);
     let (summary, derives) = (summary(model), derives());
-    // With a comma at the end, as the tokens of a list on several lines are written.
+    // A trailing comma, as in lists on several lines.
     let module = quote! {
         #[doc = #summary]
         #(#[doc = #documentation])*
@@ -129,7 +130,7 @@ pub fn summary(model: &RobotModel) -> String {
     sentence(&model.mechanism.summary)
 }
 
-/// What a robot's type derives.
+/// The traits that a robot's type derives.
 #[must_use]
 pub fn derives() -> Vec<syn::Path> {
     vec![
@@ -142,7 +143,7 @@ pub fn derives() -> Vec<syn::Path> {
     ]
 }
 
-/// How large the robot is.
+/// The sizes of the robot, in words.
 fn sizes(model: &RobotModel) -> String {
     let mechanism = &model.mechanism;
     let counted = |count: usize, one: &str, many: &str| match count {
@@ -164,13 +165,13 @@ fn sizes(model: &RobotModel) -> String {
     )
 }
 
-/// What is said of numbers that are shorter than others.
+/// A note on single precision, if it is used.
 fn is_short(model: &RobotModel) -> Option<&'static str> {
     let is_short = model.float == Float::F32;
     is_short.then_some(" All numbers are `f32`, of seven digits.")
 }
 
-/// What is said of the functions that come twice, if there are any.
+/// A note on functions with a variant that writes into the caller's matrix.
 fn written_into() -> [String; 2] {
     [
         String::new(),
@@ -189,18 +190,18 @@ fn sentence(text: &str) -> String {
     }
 }
 
-/// Where the robot's numbers come from, if the description says so.
+/// A note on the origin of the robot's numbers, if the description has one.
 fn source(text: &str) -> Option<String> {
     let text = text::documentation(text.trim().trim_end_matches('.'));
     (!text.is_empty()).then(|| format!(" Source: {text}."))
 }
 
-/// A formatted source file. `label` is the description's path as the header shall show it.
+/// A formatted source file. `label` is the description's path in the header.
 #[must_use]
 pub fn file(model: &RobotModel, label: &str) -> String {
     let label = text::plain(label);
     let (tokens, sections) = module_and_sections(model);
-    // The tokens are our own: that they parse is proved by every test that compiles them.
+    // The tokens are our own: every test that compiles them proves that they parse.
     let code = match syn::parse2(tokens.clone()) {
         Ok(file) => layout::with_comments(
             &layout::pack_arrays(&layout::join_closures(&prettyplease::unparse(&file))),

@@ -1,4 +1,4 @@
-//! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
+//! The generated `impl overact::Model`, which passes blocks of samples to the generated functions.
 
 use super::{boundary, expression, function};
 use crate::derivation::MotionInput;
@@ -115,7 +115,7 @@ fn arm(model: &RobotModel, function: Function) -> Option<TokenStream> {
     })
 }
 
-/// The function as a path of the runtime, which is how its derived `Debug` writes it.
+/// The function as a path of the runtime, in the format of its derived `Debug`.
 fn pattern(function: Function) -> TokenStream {
     let path = |text: &str| {
         let name = format_ident!("{text}");
@@ -173,7 +173,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             let start = &closed;
         }
     });
-    // Positions and step in one function, where there is one; what it does not find, the loop below may.
+    // Positions and step in one function, if there is one; if it fails, the loop below may succeed.
     let at_once = model.function(Function::PoseStep, MotionInput::Pose).map(|_| {
         quote! {
             let mut stepped = pose;
@@ -261,7 +261,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     }
 }
 
-/// The displacement of a platform that moves aside as an associated function.
+/// The displacement of a platform with parasitic motion, as an associated function.
 fn displace(independent: &[usize], kind: &TokenStream) -> TokenStream {
     let independent = independent.iter().map(|&at| Literal::usize_unsuffixed(at));
     quote! {

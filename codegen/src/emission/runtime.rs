@@ -3,14 +3,13 @@
 use crate::runtime::Runtime;
 use proc_macro2::{Group, TokenStream, TokenTree};
 
-/// The tokens with the runtime crate under its path: `::overact`, which all of them say, becomes what is
-/// wanted.
+/// Replaces the path `::overact` of the runtime crate in tokens.
 #[must_use]
 pub fn renamed(tokens: TokenStream, runtime: &Runtime) -> TokenStream {
     if *runtime == Runtime::default() {
         return tokens;
     }
-    // It is a path, by the type's own rule.
+    // It is a path by the invariant of its type.
     let path: TokenStream = runtime.path().parse().unwrap_or_default();
     rename(tokens, &path)
 }
@@ -34,13 +33,13 @@ fn rename(tokens: TokenStream, path: &TokenStream) -> TokenStream {
     out.into_iter().collect()
 }
 
-/// Words of the language behind which a path begins.
+/// Keywords that may precede a path.
 const WORDS: [&str; 14] = [
     "as", "dyn", "else", "for", "if", "impl", "in", "let", "match", "mut", "return", "use",
     "where", "while",
 ];
 
-/// Whether the last two tokens are `::`, and what stands before them ends no part of a path.
+/// Whether the last two tokens are `::` and the token before them ends no part of a path.
 fn begins_a_path(tokens: &[TokenTree]) -> bool {
     let is_colon = |token: &TokenTree| matches!(token, TokenTree::Punct(p) if p.as_char() == ':');
     match tokens {

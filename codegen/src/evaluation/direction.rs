@@ -1,18 +1,18 @@
-//! Angles of directions, atan2(y, x), of several samples at once, as loops that become vectors.
+//! Angles of directions, atan2(y, x), of several samples at once, as vectorisable loops.
 //!
-//! The smaller of |x| and |y| by the larger is the tangent of an angle of at most π/4, and one of at most π/8
-//! after π/4 is taken from the larger ones. The arc tangent of what is left is the rational function of Cephes
-//! (S. L. Moshier). Multiples of π/4 are put back in two parts.
+//! The ratio of the smaller to the larger of |x| and |y| is the tangent of an angle of at most π/4.
+//! Angles above π/8 are reduced by π/4. The arc tangent of the rest is the rational function of
+//! Cephes (S. L. Moshier). Multiples of π/4 are added back in two parts.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// What the double nearest to π lacks.
+/// π minus the double nearest to it.
 const REST: f64 = 1.224_646_799_147_353_2e-16;
 
 /// tan π/8.
 const TANGENT: f64 = 0.414_213_562_373_095_03;
 
-/// (atan t - t) / t³ as a quotient of polynomials in t², the highest power first.
+/// Rational approximation of (atan t - t) / t³ in t², the highest power first.
 const NUMERATOR: [f64; 5] = [
     -0.875_060_860_003_190_4,
     -16.157_537_187_333_652,
@@ -29,24 +29,25 @@ const DENOMINATOR: [f64; 6] = [
     194.550_657_148_261_4,
 ];
 
-/// Bounds of the larger of |x| and |y| between which nothing overflows or vanishes.
+/// Bounds of the larger of |x| and |y| between which neither overflow nor underflow occurs.
 const LEAST: f64 = 1e-150;
 const MOST: f64 = 1e150;
 
-/// Whether [`angles`] serves these directions; never for what is no number, nor for none.
+/// Whether [`angles`] is valid for these directions; false for NaN and for zero vectors.
 #[inline(always)]
 pub(super) fn are_usual<const N: usize>(y: &[f64; N], x: &[f64; N]) -> bool {
     let mut usual = true;
     for lane in 0..N {
-        // `&` rather than `&&`: there is nothing to gain from an early end.
+        // `&` instead of `&&`: an early exit would save nothing.
         let (a, b) = (y[lane].abs(), x[lane].abs());
         usual &= (a <= MOST) & (b <= MOST) & ((a >= LEAST) | (b >= LEAST));
     }
     usual
 }
 
-/// The angles of usual directions, within three units in the last place. `FUSED`: whether products are added in one
-/// rounding.
+/// Angles of usual directions, within three units in the last place.
+///
+/// `FUSED`: whether products are added with a single rounding.
 #[inline(always)]
 pub(super) fn angles<const N: usize, const FUSED: bool>(y: [f64; N], x: [f64; N]) -> [f64; N] {
     let mut found = [0.0; N];
@@ -101,13 +102,14 @@ fn angle<const FUSED: bool>(y: f64, x: f64) -> f64 {
 mod tests {
     use super::{angles, are_usual};
 
-    /// The largest distance from the library's angles, in units in the last place.
+    /// Largest difference from the library's angles, in units in the last place.
     fn worst<const FUSED: bool>() -> f64 {
         let mut worst = 0.0_f64;
         for scale in [1e-9, 1e-3, 0.1, 1.0] {
             for k in 0..20_000_u32 {
                 let sample = |lane: usize| {
-                    // A sequence that fills the circle, or a part of it around each axis, evenly.
+                    // A low-discrepancy sequence on the circle, or on a part of it around each
+                    // axis.
                     let part = f64::from(8 * k + lane as u32) * 0.618_033_988_749_894_9;
                     let quarter = f64::from(k % 4) * std::f64::consts::FRAC_PI_2;
                     let angle = quarter + scale * std::f64::consts::PI * (2.0 * part.fract() - 1.0);

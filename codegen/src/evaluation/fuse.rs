@@ -1,10 +1,11 @@
-//! The steps of a program as passes over a block, two or three steps at once where a value is used once
-//! or where several steps share an operand.
+//! Converts the steps of a program to passes over a block.
+//!
+//! Two or three steps are fused if a value is used once, or if several steps share an operand.
 
 use crate::lowering::{Operand, Operation, Program};
 use std::collections::HashMap;
 
-/// What can be fused.
+/// Operations that can be fused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Arithmetic {
     Add,
@@ -12,7 +13,7 @@ pub(super) enum Arithmetic {
     Mul,
 }
 
-/// What a pass computes of its operands a, b, c, d.
+/// The computation of a pass on its operands a, b, c, d.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     /// a ∘ b
@@ -46,7 +47,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// A number of its own for every kind.
+    /// A unique number for each kind.
     pub(super) const fn code(self) -> u8 {
         match self {
             Self::One(a) => a as u8,
@@ -69,7 +70,7 @@ impl Kind {
     }
 }
 
-/// A number of a program; constants by their bits.
+/// A value of a program; constants by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Value {
     Constant(u64),
@@ -87,15 +88,15 @@ impl Value {
     }
 }
 
-/// Results of a pass, at most.
+/// Largest number of results of a pass.
 pub(super) const RESULTS: usize = 3;
 
-/// A pass over a block whose operands have no place yet.
+/// A pass over a block whose operands have no slots yet.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
     pub(super) kind: Kind,
     pub(super) operands: Vec<Value>,
-    /// What it computes; of an angle the sine and the cosine, of which one may be unused.
+    /// The computed values; for an angle the sine and the cosine, one of which may be unused.
     pub(super) results: [Option<Value>; RESULTS],
 }
 
@@ -109,7 +110,7 @@ impl Draft {
     }
 }
 
-/// The passes of a program, in its order but for those that are done with an earlier one.
+/// The passes of a program in order; some steps are merged into earlier passes.
 pub(super) fn drafts(program: &Program) -> Vec<Draft> {
     let fuse = Fuse::new(program);
     let mut angles = angles(program);
@@ -119,7 +120,7 @@ pub(super) fn drafts(program: &Program) -> Vec<Draft> {
             continue;
         }
         if let Operation::Sine(angle) | Operation::Cosine(angle) = step.operation {
-            // Both at the place of the first.
+            // Both at the position of the first.
             if let Some([sine, cosine]) = angles.remove(&Value::of(angle)) {
                 drafts.push(Draft {
                     kind: Kind::Angle,
@@ -134,7 +135,7 @@ pub(super) fn drafts(program: &Program) -> Vec<Draft> {
     sharing(chains(program, drafts))
 }
 
-/// The same passes, where one of a single step is done with the pass of two that alone needs it.
+/// Merges passes of one step into the only pass of two steps that needs them.
 fn chains(program: &Program, drafts: Vec<Draft>) -> Vec<Draft> {
     let entries = program.entries.iter().map(|entry| entry.operand);
     let kept = entries.chain(program.guards.iter().map(|guard| guard.operand));
@@ -165,7 +166,7 @@ fn chains(program: &Program, drafts: Vec<Draft>) -> Vec<Draft> {
     chained.into_iter().flatten().collect()
 }
 
-/// The steps that hold the sine and the cosine of each angle.
+/// The steps with the sine and the cosine of each angle.
 fn angles(program: &Program) -> HashMap<Value, [Option<usize>; 2]> {
     let mut angles: HashMap<Value, [Option<usize>; 2]> = HashMap::new();
     for (at, step) in program.steps.iter().enumerate() {
@@ -191,7 +192,7 @@ fn arithmetic(operation: Operation) -> Option<(Arithmetic, Operand, Operand)> {
 
 struct Fuse<'p> {
     program: &'p Program,
-    /// Whether a step is computed by the only one that needs it.
+    /// Whether a step is computed by its only user.
     fused: Vec<bool>,
 }
 
@@ -211,7 +212,7 @@ impl<'p> Fuse<'p> {
         }
         let uses = program.uses();
         let mut fused = vec![false; count];
-        // From the end, so that a step which is fused into another one takes none into itself.
+        // In reverse order, so that a fused step absorbs no other step.
         for at in (0..count).rev() {
             let operands = arithmetic(program.steps[at].operation).filter(|_| !fused[at]);
             for operand in operands.into_iter().flat_map(|(_, a, b)| [a, b]) {
@@ -224,7 +225,7 @@ impl<'p> Fuse<'p> {
         Self { program, fused }
     }
 
-    /// The step that is computed with the one that needs it.
+    /// The step that is computed together with its user.
     fn inner(&self, operand: Operand) -> Option<(Arithmetic, Operand, Operand)> {
         match operand {
             Operand::Step(at) if self.fused[at] => arithmetic(self.program.steps[at].operation),
@@ -256,7 +257,7 @@ impl<'p> Fuse<'p> {
             (None, Some((last, a, b))) if middle == Arithmetic::Sub => {
                 of(Kind::From(last), &[a, b, left])
             }
-            // Sums and products may change sides.
+            // Addition and multiplication are commutative.
             (None, Some((last, a, b))) => of(Kind::Then(last, middle), &[a, b, left]),
             (Some((first, a, b)), Some((last, c, d))) => {
                 of(Kind::Both(first, middle, last), &[a, b, c, d])
@@ -265,8 +266,7 @@ impl<'p> Fuse<'p> {
     }
 }
 
-/// The same passes, where products with a common factor, or numbers that take a common sign, are computed
-/// together.
+/// Merges products with a common factor, and numbers with a common sign.
 fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
     let mut made: HashMap<Value, usize> = HashMap::new();
     let mut users: HashMap<(Kind, Value), Vec<usize>> = HashMap::new();
@@ -283,7 +283,7 @@ fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
             continue;
         }
         let is_there = |value: &Value| made.get(value).is_none_or(|&maker| maker < number);
-        // Later passes whose operands are there already.
+        // Later passes whose operands exist already.
         let mates = |common: Value| -> Vec<usize> {
             let later = users[&(draft.kind, common)].iter().copied();
             later
@@ -311,8 +311,8 @@ fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
 }
 
 impl Draft {
-    /// The pass together with that of a single step which makes its operand at `place`, where there is a
-    /// pass for all three steps.
+    /// This pass merged with the single-step pass of its operand at `place`, if there is a pass for
+    /// the three steps.
     fn after(&self, first: &Self, place: usize) -> Option<Self> {
         let Kind::One(f) = first.kind else {
             return None;
@@ -324,7 +324,7 @@ impl Draft {
         };
         let other = match (place, g) {
             (0, _) => self.operands[1],
-            // Sums and products may change sides.
+            // Addition and multiplication are commutative.
             (1, Arithmetic::Add | Arithmetic::Mul) => self.operands[0],
             _ => return None,
         };
@@ -336,7 +336,7 @@ impl Draft {
         })
     }
 
-    /// The operands that it may share with others of its kind.
+    /// The operands that it may share with passes of its kind.
     fn common(&self) -> impl Iterator<Item = Value> {
         let count = match self.kind {
             Kind::One(Arithmetic::Mul) if self.operands[0] == self.operands[1] => 1,
@@ -347,7 +347,7 @@ impl Draft {
         self.operands.clone().into_iter().take(count)
     }
 
-    /// Several passes of its kind as one, where there is a pass for so many.
+    /// Several passes of this kind as one, if there is a pass for that number.
     fn with_common(&self, common: Value, members: Vec<&Self>) -> Option<Self> {
         let kind = match (self.kind, members.len()) {
             (Kind::One(_), 2) => Kind::TwoProducts,

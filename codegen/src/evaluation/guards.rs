@@ -6,8 +6,9 @@ use crate::lowering::{Condition, Guard};
 use overact_core::limits::DOUBLE;
 use pulp::NullaryFnOnce;
 
-/// The guards, whose values are in `places`, at `count` samples from number `start` on. Lanes beyond the
-/// last sample repeat it.
+/// Checks the guards, with values in `places`, at `count` samples from `start` on.
+///
+/// Lanes after the last sample repeat it.
 pub(super) fn check(
     guards: &[Guard],
     places: &[Slot],
@@ -39,7 +40,7 @@ pub(super) fn check(
     first.map_or(Ok(()), Err)
 }
 
-/// All guards at all samples, which usually hold.
+/// All guards at all samples; they usually hold.
 struct All<'a> {
     guards: &'a [Guard],
     places: &'a [Slot],
@@ -59,7 +60,7 @@ impl All<'_> {
 impl NullaryFnOnce for All<'_> {
     type Output = bool;
 
-    // Loops here and below: closures that iterators call would not be compiled for wide vectors.
+    // Loops here and below: closures in iterators are not compiled for wide vectors.
     #[inline(always)]
     fn call(self) -> bool {
         let mut hold = true;
@@ -71,7 +72,7 @@ impl NullaryFnOnce for All<'_> {
 }
 
 impl Condition {
-    /// Whether the condition holds for a value; never for NaN.
+    /// Whether the condition holds for a value; false for NaN.
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
         self.holds_for_all(&[value])
@@ -80,7 +81,7 @@ impl Condition {
     /// Whether the condition holds for all values.
     #[inline(always)]
     fn holds_for_all<const N: usize>(&self, values: &[f64; N]) -> bool {
-        // Without an early end, so that several values are compared at a time.
+        // Without an early exit, so that several values are compared at a time.
         let mut hold = true;
         match self {
             Self::Reach { home, .. } => {

@@ -1,12 +1,13 @@
-//! Inputs on their way into a block: from rows to values that lie side by side.
+//! Loads inputs into a block: transposes rows of samples to contiguous values.
 
 use super::lanes::{Lanes, WIDTH, store};
 use super::plan::{Load, Plan};
 use super::{BLOCK, Rows};
 use crate::lowering::Program;
 
-/// Fills the slots of the inputs with those of `count` samples from sample `first` on. Lanes beyond the
-/// last sample repeat it, so that they stay harmless.
+/// Fills the slots of the inputs for `count` samples from sample `first` on.
+///
+/// Lanes after the last sample repeat it, so that they are harmless.
 pub(super) fn load(
     program: &Program,
     plan: &Plan,
@@ -32,7 +33,7 @@ pub(super) fn load(
     }
 }
 
-/// The same values for all samples; zeros where there are none.
+/// Fills slots with the same value for all samples; zero if it is missing.
 fn fill(loads: &[Load], values: &[f64], slots: &[Lanes]) {
     for load in loads {
         let value = values.get(load.index).copied().unwrap_or(0.0);
@@ -42,7 +43,7 @@ fn fill(loads: &[Load], values: &[f64], slots: &[Lanes]) {
     }
 }
 
-/// Numbers of one array, whose rows have `width` of them, on their way to their slots.
+/// Loads the numbers of one array, with rows of length `width`, into their slots.
 fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
     macro_rules! of_width {
         ($($known:literal)*) => {
@@ -52,7 +53,7 @@ fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
             }
         };
     }
-    // What is known when the code is compiled takes half the time.
+    // Constant widths halve the time.
     let done = of_width!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
     let count = values.len() / width;
     for load in loads {
@@ -67,7 +68,7 @@ fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
     }
 }
 
-/// As many samples as make whole vectors; returns how many these are.
+/// Loads as many samples as fill whole vectors; returns their number.
 fn read_vectors<const N: usize>(loads: &[Load], values: &[f64], slots: &[Lanes]) -> usize {
     let vectors = values.as_chunks::<N>().0.as_chunks::<WIDTH>().0;
     for load in loads.iter().filter(|load| load.index < N) {

@@ -1,9 +1,9 @@
-//! The passes over a block, for the widest vectors that the processor has.
+//! Runs the passes over a block, in the widest vectors of the processor.
 //!
-//! The code is plain loops over arrays; it is compiled once for every width of vectors and chosen at run
-//! time. No pass fuses a multiplication with an addition into one rounding, but for the polynomials of
-//! sines, cosines and angles of directions, which take most of the arithmetic: AVX2 and AVX-512 give the same
-//! numbers to the last digit.
+//! The code consists of loops over arrays. It is compiled once for every vector width, and chosen
+//! at run time. No pass fuses a multiplication and an addition into one rounding, except in the
+//! polynomials of sines, cosines and angles of directions, which dominate the arithmetic. AVX2 and
+//! AVX-512 give identical results.
 
 use super::BLOCK;
 use super::direction::{angles, are_usual};
@@ -13,11 +13,12 @@ use super::trigonometry::{are_small, sines_and_cosines};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
-/// Numbers that are worked on at a time: the widest vector.
+/// Number of values per iteration: the widest vector.
 pub(super) const WIDTH: usize = 8;
 
-/// The values of one number at the samples of a block. Cells, because a step's result may lie where its
-/// operands are.
+/// The values of one number at the samples of a block.
+///
+/// They are cells, because a step's result may overwrite its operands.
 pub(super) type Lanes = [Cell<f64>; BLOCK];
 
 /// Runs passes over a block.
@@ -35,7 +36,7 @@ pub(super) fn run(passes: &[Pass], blocks: &[Lanes]) {
     Run::<false> { passes, blocks }.call();
 }
 
-/// `FUSED`: whether the processor adds a product in one rounding.
+/// `FUSED`: whether the processor adds a product with a single rounding.
 #[derive(Clone, Copy)]
 struct Run<'a, const FUSED: bool> {
     passes: &'a [Pass],
@@ -59,7 +60,7 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
         self.blocks[slot as usize].as_chunks().0
     }
 
-    /// Sines and cosines by the library, out of the way of what is usual.
+    /// Sines and cosines by the library, kept out of line.
     #[cold]
     #[inline(never)]
     fn large_angles(&self, at: &Pass) {
@@ -72,7 +73,7 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
         }
     }
 
-    /// Angles of directions by the library.
+    /// Angles of directions by the library, kept out of line.
     #[cold]
     #[inline(never)]
     fn unusual_directions(&self, at: &Pass) {
@@ -87,7 +88,7 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
 impl<const FUSED: bool> Worker for Run<'_, FUSED> {
     #[inline(always)]
     fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64) {
-        // Loops, as closures for arrays would double the work of the compiler.
+        // Loops, because closures for arrays would double the compile time.
         let mut operands = [self.block(at.operands[0]); N];
         for (operand, slot) in operands.iter_mut().zip(at.operands) {
             *operand = self.block(slot);
@@ -137,8 +138,8 @@ impl<const FUSED: bool> Worker for Run<'_, FUSED> {
     fn angles(&self, at: &Pass) {
         let angles = self.block(at.operands[0]);
         let (sines, cosines) = (self.block(at.results[0]), self.block(at.results[1]));
-        // Asked for the whole block, so that the loop is free of branches. What is no number gives no
-        // number either way.
+        // Checked for the whole block, so that the loop has no branches. NaN results in NaN either
+        // way.
         let mut largest = [0.0_f64; WIDTH];
         for part in angles {
             let part = load(part);
@@ -165,7 +166,7 @@ impl<const FUSED: bool> Worker for Run<'_, FUSED> {
     fn directions(&self, at: &Pass) {
         let [y, x, found] =
             [at.operands[0], at.operands[1], at.results[0]].map(|slot| self.block(slot));
-        // Samples behind the last one may hold anything; the library has an answer to that, too.
+        // Samples after the last one may be anything; the library handles them, too.
         let mut usual = true;
         for (y, x) in y.iter().zip(x) {
             usual &= are_usual(&load(y), &load(x));

@@ -1,11 +1,12 @@
 //! Programs evaluated over blocks of samples.
 //!
-//! A [`Program`] becomes a plan: a list of passes over a block, each of which computes one to three steps
-//! for all its samples at once, with the widest vectors that the processor has. The values of a number
-//! lie side by side (structure of arrays), and the overhead of interpretation is shared by the whole
-//! block. Numbers enter sample by sample, row-major. They are handed out as they lie, soon after they are
-//! computed ([`Evaluator::evaluate_numbers`]), or row-major too ([`Evaluator::evaluate`]), which takes
-//! several times as long: a model has hundreds of numbers, and each has to be moved.
+//! A [`Program`] becomes a plan: a list of passes over a block. Each pass computes one to three
+//! steps for all samples of the block, in the widest vectors of the processor. Values of one number
+//! are contiguous (structure of arrays), so the whole block shares the overhead of interpretation.
+//! Inputs are row-major, sample by sample. Outputs are delivered number by number, soon after they
+//! are computed ([`Evaluator::evaluate_numbers`]), or row-major ([`Evaluator::evaluate`]). The
+//! latter takes several times as long, since a model has hundreds of numbers that have to be
+//! transposed.
 
 mod direction;
 mod fuse;
@@ -27,16 +28,16 @@ use plan::Plan;
 use single::Single;
 use std::cell::Cell;
 
-/// Samples per block: what a program has alive stays in the nearest caches.
+/// Samples per block: live values of a program fit into the first-level cache.
 pub const BLOCK: usize = 64;
 
-/// Numbers in a line of the cache.
+/// Numbers in a cache line.
 const LINE: usize = 8;
 
-/// Numbers of an output that are handed out at a time.
+/// Numbers of an output that are delivered at a time.
 const TOGETHER: usize = 16;
 
-/// A program whose condition failed at a sample.
+/// A failed guard of a program, and the sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failed {
     /// The sample.
@@ -59,23 +60,25 @@ pub struct Rows<'a> {
 /// One number of an output at successive samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Number<'a> {
-    /// Which number of the output it is.
+    /// Index of the number in the output.
     pub index: usize,
     /// The first sample.
     pub first: usize,
-    /// The sign to give to the values: ±1. Numbers that are equal but for the sign share their values.
+    /// Sign of the values: ±1. Numbers that differ by the sign only share their values.
     pub sign: f64,
     /// The values, at most [`BLOCK`].
     pub values: &'a [f64],
 }
 
 impl Program {
-    /// Evaluates the program at `samples` samples. Each input holds `len` numbers per sample (or once,
-    /// if shared); the output receives as many rows. An [`Evaluator`] does it again without preparation.
+    /// Evaluates the program at `samples` samples.
+    ///
+    /// Each input has `len` numbers per sample (or once, if shared); the output receives one row
+    /// per sample. An [`Evaluator`] repeats this without preparation.
     ///
     /// # Errors
-    /// The first sample at which a guard fails. Inputs and outputs of a wrong length are the caller's
-    /// error and give an incomplete output.
+    /// The first sample at which a guard fails. Inputs and outputs of a wrong length are an error
+    /// of the caller and give an incomplete output.
     pub fn evaluate(
         &self,
         samples: usize,
@@ -89,7 +92,7 @@ impl Program {
     }
 }
 
-/// A program that is ready to be evaluated, with the memory that this takes.
+/// A program prepared for evaluation, with its memory.
 #[derive(Debug)]
 pub struct Evaluator {
     program: Program,
@@ -99,7 +102,7 @@ pub struct Evaluator {
 }
 
 impl Evaluator {
-    /// Prepares a program. What is only needed for single samples or for blocks is prepared with the first one.
+    /// Prepares a program. Data for single samples or for blocks are prepared at the first use.
     #[must_use]
     pub fn new(program: &Program) -> Self {
         Self {
@@ -110,11 +113,11 @@ impl Evaluator {
         }
     }
 
-    /// Evaluates the program at `samples` samples, as [`Program::evaluate`] does.
+    /// Evaluates the program at `samples` samples, like [`Program::evaluate`].
     ///
     /// # Errors
-    /// The first sample at which a guard fails. Inputs and outputs of a wrong length are the caller's
-    /// error and give an incomplete output.
+    /// The first sample at which a guard fails. Inputs and outputs of a wrong length are an error
+    /// of the caller and give an incomplete output.
     pub fn evaluate(
         &mut self,
         samples: usize,
@@ -126,7 +129,7 @@ impl Evaluator {
             let single = self.single.get_or_insert_with(|| Single::new(program));
             return single.evaluate(program, inputs, output);
         }
-        // Numbers of a row lie side by side, so they are moved when all are there.
+        // Numbers of a row are adjacent, so they are moved when all are computed.
         let memory = self
             .rows
             .get_or_insert_with(|| Memory::new(program, usize::MAX));
@@ -150,12 +153,14 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Evaluates the program at `samples` samples, and hands out its numbers soon after they are computed,
-    /// while they are in the nearest cache: block by block, the numbers of a block in no particular order.
+    /// Evaluates the program at `samples` samples, and delivers its numbers while they are in the
+    /// first-level cache.
+    ///
+    /// The order is block by block; the numbers of a block have no particular order.
     ///
     /// # Errors
-    /// The first sample at which a guard fails; what was handed out of its block is not valid. Inputs of a
-    /// wrong length are the caller's error and count as zeros.
+    /// The first sample at which a guard fails; numbers delivered from its block are invalid.
+    /// Inputs of a wrong length are an error of the caller and count as zeros.
     pub fn evaluate_numbers(
         &mut self,
         samples: usize,
@@ -188,21 +193,21 @@ impl Evaluator {
     }
 }
 
-/// The slots of a plan, a block each.
+/// The slots of a plan, one block each.
 #[derive(Debug)]
 struct Memory {
     plan: Plan,
-    /// The slots, behind what aligns them.
+    /// The slots, after padding for alignment.
     values: Vec<f64>,
     start: usize,
 }
 
 impl Memory {
-    /// Memory for a program whose numbers are handed out when `together` of them are there.
+    /// Memory for a program whose numbers are delivered in groups of `together`.
     fn new(program: &Program, together: usize) -> Self {
         let plan = Plan::new(program, together);
         let mut values = vec![0.0; plan.slots as usize * BLOCK + LINE];
-        // Vectors that lie across two lines of the cache take twice the time.
+        // Vectors that cross a cache line take twice the time.
         let start = values.as_ptr().align_offset(LINE * size_of::<f64>());
         let start = start.min(LINE);
         let slots = values[start..].as_chunks_mut::<BLOCK>().0;
@@ -216,7 +221,7 @@ impl Memory {
         }
     }
 
-    /// Takes the inputs at `count` samples from number `first` on.
+    /// Loads the inputs at `count` samples from `first` on.
     fn load(&mut self, program: &Program, first: usize, count: usize, inputs: &[Rows<'_>]) {
         let values = Cell::from_mut(&mut self.values[self.start..]);
         let slots = values.as_slice_of_cells().as_chunks().0;
@@ -236,10 +241,10 @@ impl Memory {
     }
 }
 
-/// a with the sign of b; zero where b is zero or no number.
+/// a with the sign of b; zero if b is zero or NaN.
 #[inline(always)]
 pub(crate) fn signed(a: f64, b: f64) -> f64 {
-    // On bits, which vectors of all processors have operations for.
+    // On bits, for which all processors have vector operations.
     let sign = b.to_bits() & (-0.0_f64).to_bits();
     if b.abs() > 0.0 {
         f64::from_bits(a.to_bits() ^ sign)

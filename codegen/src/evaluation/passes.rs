@@ -1,10 +1,10 @@
-//! What the passes of a plan compute, whatever they compute it on: a block of samples or a single one.
+//! The computations of passes, for a block of samples or a single sample.
 
 use super::fuse::{Arithmetic, Kind};
 use super::plan::Pass;
 use super::signed;
 
-/// What carries passes out.
+/// Executes passes.
 pub(super) trait Worker {
     /// One result of N operands.
     fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64);
@@ -18,11 +18,11 @@ pub(super) trait Worker {
     /// Sine and cosine of the operand.
     fn angles(&self, at: &Pass);
 
-    /// The angle of the direction that two operands are the sine and the cosine of, times a length.
+    /// The angle of the direction whose sine and cosine, times a length, are the operands.
     fn directions(&self, at: &Pass);
 }
 
-/// The body for every operation in place of [`Arithmetic`] `$o`, `$f` being its function.
+/// Expands the body for every operation in place of [`Arithmetic`] `$o`, with its function `$f`.
 macro_rules! for_each {
     ($o:ident, $f:ident, $body:expr) => {{
         {
@@ -43,7 +43,7 @@ macro_rules! for_each {
     }};
 }
 
-/// Goes on with `$body` where the pass is of a kind.
+/// Executes `$body` if the pass is of a kind.
 macro_rules! when {
     ($at:ident, $kind:expr, $body:expr) => {
         if $at.code == const { $kind.code() } {
@@ -52,8 +52,8 @@ macro_rules! when {
     };
 }
 
-/// Carries a pass out.
-// One comparison after the other, which the compiler makes one jump of; kinds within kinds would be several.
+/// Executes a pass.
+// A sequence of comparisons, which compiles to one jump table; nested kinds would give several.
 #[inline(always)]
 pub(super) fn work(at: &Pass, worker: &impl Worker) {
     for_each!(F, f, {

@@ -1,15 +1,14 @@
-//! A program made ready for blocks: passes over a block, and the memory that values take.
+//! Plan of a program for blocks: passes and memory slots of values.
 //!
-//! A value gets a slot of the memory, which is free again after the last use, so that what is alive at a
-//! time stays in the nearest cache. Numbers of the output are handed out soon after they are computed, for
-//! the same reason: a model has hundreds of them.
+//! A value gets a slot of the memory, which is free after its last use, so that live values stay in
+//! the first-level cache. For the same reason, the output's hundreds of numbers are delivered soon
+//! after they are computed.
 
 use super::fuse::{Draft, RESULTS, Value, drafts};
 use crate::lowering::Program;
 use std::{collections::HashMap, ops::Range};
 
-/// A slot of the memory, which holds the values of one number over a block. Half a word, so that a pass is
-/// half as long.
+/// A slot of the memory: the values of one number over a block. 32 bits keep a pass short.
 pub(super) type Slot = u32;
 
 /// One pass over a block: one to three steps of the program.
@@ -17,11 +16,11 @@ pub(super) type Slot = u32;
 pub(super) struct Pass {
     pub(super) code: u8,
     pub(super) operands: [Slot; 4],
-    /// Where the results go.
+    /// Slots of the results.
     pub(super) results: [Slot; RESULTS],
 }
 
-/// An input's number and its slot.
+/// An element of an input and its slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Load {
     pub(super) array: usize,
@@ -32,36 +31,36 @@ pub(super) struct Load {
 /// A number of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Output {
-    /// Which one it is.
+    /// Index of the number.
     pub(super) index: usize,
     pub(super) slot: Slot,
-    /// -1 where its negative is meant, else 1.
+    /// -1 for the negative of the value, otherwise 1.
     pub(super) sign: f64,
 }
 
-/// Some passes, and the numbers of the output that are handed out after them.
+/// Some passes, and the numbers of the output that are delivered after them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Stage {
     pub(super) passes: Range<usize>,
     pub(super) outputs: Range<usize>,
 }
 
-/// A program made ready for blocks.
+/// A program prepared for blocks.
 #[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) passes: Vec<Pass>,
     pub(super) stages: Vec<Stage>,
     pub(super) constants: Vec<(Slot, f64)>,
     pub(super) loads: Vec<Load>,
-    /// In the order in which they are handed out.
+    /// In order of delivery.
     pub(super) outputs: Vec<Output>,
     pub(super) guards: Vec<Slot>,
-    /// Slots of the memory.
+    /// Number of slots.
     pub(super) slots: Slot,
 }
 
 impl Plan {
-    /// Makes a program ready whose numbers are handed out when `together` of them are there.
+    /// Plans a program whose numbers are delivered in groups of `together`.
     pub(super) fn new(program: &Program, together: usize) -> Self {
         let drafts = drafts(program);
         let mut planner = Planner::new(program, &drafts);
@@ -79,22 +78,22 @@ impl Plan {
                 planner.hand_out();
             }
         }
-        // What is not computed: constants and inputs.
+        // Constants and inputs, which are not computed.
         planner.waiting.extend(outputs.into_values().flatten());
         planner.hand_out();
         planner.finish()
     }
 }
 
-/// Gives out slots, in the order of the passes.
+/// Allocates slots, in the order of the passes.
 struct Planner<'p> {
     program: &'p Program,
     plan: Plan,
     slots: HashMap<Value, Slot>,
     free: Vec<Slot>,
-    /// How often a value is still needed, by passes, by the output and by guards.
+    /// Remaining uses of a value by passes, the output and guards.
     needed: HashMap<Value, usize>,
-    /// The numbers of the output that are computed, and not handed out yet.
+    /// Numbers of the output that are computed but not delivered yet.
     waiting: Vec<usize>,
 }
 
@@ -122,7 +121,7 @@ impl<'p> Planner<'p> {
         for (slot, &value) in operands.iter_mut().zip(&draft.operands) {
             *slot = self.slot(value);
         }
-        // A result may take the place of an operand that ends here: all is read before it is written.
+        // A result may overwrite an operand at its last use: operands are read first.
         draft.operands.iter().for_each(|&value| self.used(value));
         let results = draft.results.map(|value| self.result(value));
         self.plan.passes.push(Pass {
@@ -132,8 +131,9 @@ impl<'p> Planner<'p> {
         });
     }
 
-    /// A value is needed once less; where it is needed no more, its slot is free again. Inputs come again
-    /// with the next block, constants do not.
+    /// Counts a use of a value; frees its slot after the last one.
+    ///
+    /// Inputs are loaded again with the next block, constants are not.
     fn used(&mut self, value: Value) {
         let needed = self.needed.entry(value).or_default();
         *needed = needed.saturating_sub(1);
@@ -142,7 +142,7 @@ impl<'p> Planner<'p> {
         }
     }
 
-    /// The slot of a value that is there; constants and inputs get theirs when they are first needed.
+    /// The slot of an existing value; constants and inputs get theirs at the first use.
     fn slot(&mut self, value: Value) -> Slot {
         if let Some(&slot) = self.slots.get(&value) {
             return slot;
@@ -152,19 +152,19 @@ impl<'p> Planner<'p> {
         match value {
             Value::Constant(bits) => self.plan.constants.push((slot, f64::from_bits(bits))),
             Value::Input { array, index } => self.plan.loads.push(Load { array, index, slot }),
-            // Steps are in order: what they need is computed.
+            // Steps are in order, so operands are already computed.
             Value::Step(_) => {}
         }
         slot
     }
 
-    /// A new slot. Constants and inputs are there before the first pass: theirs are not shared.
+    /// A new slot. Constants and inputs exist before the first pass, so their slots are not shared.
     fn fresh(&mut self) -> Slot {
         self.plan.slots += 1;
         self.plan.slots - 1
     }
 
-    /// The slot of a result; one that nothing needs goes to a slot that is free.
+    /// The slot of a result; an unused one gets a slot that is free.
     fn result(&mut self, value: Option<Value>) -> Slot {
         let slot = self.free.pop().unwrap_or_else(|| self.fresh());
         match value.filter(|value| self.needed.contains_key(value)) {
@@ -176,7 +176,7 @@ impl<'p> Planner<'p> {
         slot
     }
 
-    /// Ends a stage with the numbers that wait.
+    /// Ends a stage; delivers the waiting numbers.
     fn hand_out(&mut self) {
         let ends = |stage: &Stage| (stage.passes.end, stage.outputs.end);
         let (pass, output) = self.plan.stages.last().map_or((0, 0), ends);

@@ -1,12 +1,11 @@
-//! Outputs on their way out of a block: from values that lie side by side to rows, in whole lines of the
-//! cache.
+//! Stores outputs of a block: transposes contiguous values to rows, in whole cache lines.
 
 use super::plan::Output;
 use super::turn::{Plain, SIDE, Turn};
 use super::{BLOCK, LINE};
 use pulp::NullaryFnOnce;
 
-/// The numbers of an output over a block, all there, in their order.
+/// All numbers of an output over a block, in order.
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     pub(super) outputs: &'a [Output],
@@ -69,7 +68,7 @@ impl<T: Turn> NullaryFnOnce for Write<'_, T> {
     }
 }
 
-/// Writes line number `line` of a row.
+/// Writes cache line `line` of a row.
 #[inline(always)]
 fn put(row: &mut [f64], line: usize, left: [f64; SIDE], right: [f64; SIDE]) {
     let place = &mut row[line * LINE..(line + 1) * LINE];
@@ -77,7 +76,7 @@ fn put(row: &mut [f64], line: usize, left: [f64; SIDE], right: [f64; SIDE]) {
     place[SIDE..].copy_from_slice(&right);
 }
 
-/// Writes `outputs`, the first of which is number `column`, at the samples from number `first` on.
+/// Writes `outputs`, from column `column` on, at the samples from `first` on.
 #[inline(always)]
 fn number_by_number(
     block: &Block<'_>,

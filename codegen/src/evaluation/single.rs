@@ -1,6 +1,7 @@
-//! One sample at a time, for iterations and simulations whose next sample depends on the last: the passes
-//! of the plan on scalars. A program that is evaluated once is not worth a plan; its steps are gone through as
-//! they stand.
+//! Evaluation of one sample at a time, for iterations and simulations.
+//!
+//! The passes of the plan run on scalars. For a single evaluation a plan does not pay, so the
+//! program's steps are interpreted directly.
 
 use super::passes::{Worker, work};
 use super::plan::{Pass, Plan, Slot};
@@ -8,7 +9,7 @@ use super::{Failed, Rows, signed};
 use crate::lowering::{Operand, Operation, Program};
 use std::cell::Cell;
 
-/// A program made ready for one sample after the other.
+/// A program prepared for successive samples.
 #[derive(Debug)]
 pub(super) struct Single {
     plan: Plan,
@@ -17,7 +18,7 @@ pub(super) struct Single {
 }
 
 impl Single {
-    /// Makes a program ready.
+    /// Prepares a program.
     pub(super) fn new(program: &Program) -> Self {
         let plan = Plan::new(program, usize::MAX);
         let mut values = vec![0.0; plan.slots as usize];
@@ -63,7 +64,7 @@ impl Single {
     }
 }
 
-/// The values of a sample. Cells, because a result may lie where its operands are.
+/// The values of a sample. Cells, because a result may overwrite its operands.
 struct Scalars<'a>(&'a [Cell<f64>]);
 
 impl Scalars<'_> {

@@ -1,4 +1,4 @@
-//! Blocks against single samples, on a program of every operation in every fused form.
+//! Compares blocks with single samples, on a program of every operation in every fused form.
 
 use super::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
@@ -14,7 +14,7 @@ const fn input(array: usize, index: usize) -> Operand {
     Operand::Input { array, index }
 }
 
-/// A program of two inputs, the second shared, whose outputs hold every kind of number.
+/// A program of two inputs, the second shared, whose outputs contain every kind of number.
 fn program() -> Program {
     use Operation::{Add, Atan2, Cosine, Div, Mul, Neg, Sign, Signed, Sine, Sqrt, Sub};
     let at = Operand::Step;
@@ -49,7 +49,7 @@ fn program() -> Program {
             operations.push(two(last, x, Operand::Constant(0.75)));
             operations.push(two(middle, at(inner), at(inner + 1)));
             outputs.push(inner + 2);
-            // Three in a row, the second and the third step on either side.
+            // Three in a row, with the second and third step on either side.
             for sides in 0..4 {
                 let chain = operations.len();
                 let on = |side: bool, a: Operand, b: Operand| if side { (a, b) } else { (b, a) };
@@ -159,7 +159,7 @@ fn one_large_angle_of_a_block_is_the_library_s() {
         let mut found = vec![f64::NAN; BLOCK * width];
         let done = program.evaluate(BLOCK, &inputs, &mut found);
         assert_eq!(done, Ok(()));
-        // The second output is the cosine of the second input, its negative.
+        // The second output is the negative cosine of the second input.
         let cosine = -found[5 * width + 1];
         let exact = large.cos();
         assert!(cosine.to_bits() == exact.to_bits() || cosine.is_nan() && exact.is_nan());
@@ -175,7 +175,7 @@ fn numbers_are_handed_out_once_each_and_are_those_of_rows() {
         let states = states(samples);
         let inputs = [rows(&states, false), rows(&[1.7], true)];
         let mut expected = vec![f64::NAN; samples * width];
-        // Two samples at least: a single one has sines and cosines of another library.
+        // At least two samples: a single one uses sines and cosines of another library.
         let twice = [states.as_slice(), &states].concat();
         let more = [rows(&twice, false), rows(&[1.7], true)];
         expected.resize(2 * samples * width, f64::NAN);
@@ -199,7 +199,7 @@ fn the_first_sample_that_fails_is_named() {
     let program = program();
     let mut states = states(2 * BLOCK + 3);
     for sample in [BLOCK + 5, BLOCK + 9] {
-        // The cosine that the guard sees vanishes.
+        // The guarded cosine vanishes.
         states[2 * sample] = std::f64::consts::FRAC_PI_2;
     }
     let inputs = [rows(&states, false), rows(&[1.7], true)];

@@ -1,24 +1,26 @@
-//! Sines and cosines of several angles at once, as loops that become vectors.
+//! Sines and cosines of several angles at once, as vectorisable loops.
 //!
-//! The method and its numbers are those of [`overact_core::trigonometry`], as in generated code; results
-//! may differ in the last digit, for processors that add products in one rounding.
+//! The method and its constants are those of [`overact_core::trigonometry`], as in generated code.
+//! Results may differ in the last digit on processors with fused multiply-add.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
 /// The bit of the sign.
 const SIGN: u64 = 1 << 63;
 
-/// Whether [`sines_and_cosines`] serves these angles; never for what is no number.
+/// Whether [`sines_and_cosines`] is valid for these angles; false for NaN.
 #[inline(always)]
 pub(super) fn are_small<const N: usize>(angles: &[f64; N]) -> bool {
-    // `&` rather than `&&`: one comparison for all, for there is nothing to gain from an early end.
+    // `&` instead of `&&`: an early exit would save nothing.
     angles
         .iter()
         .fold(true, |all, angle| all & (angle.abs() <= LARGEST))
 }
 
-/// Sines and cosines of small angles in radians, within two units in the last place. `FUSED`: whether
-/// products are added in one rounding, for processors that have an instruction for that.
+/// Sines and cosines of small angles in radians, within two units in the last place.
+///
+/// `FUSED`: whether products are added with a single rounding, on processors with such an
+/// instruction.
 #[inline(always)]
 pub(super) fn sines_and_cosines<const N: usize, const FUSED: bool>(
     angles: [f64; N],
@@ -55,7 +57,8 @@ fn sine_and_cosine<const FUSED: bool>(x: f64) -> (f64, f64) {
     let sine = add::<FUSED>(r * z, polynomial::<FUSED>(z, SINE), r);
     let cosine = add::<FUSED>(z, polynomial::<FUSED>(z, COSINE), -0.5);
     let cosine = add::<FUSED>(z, cosine, 1.0);
-    // Odd quadrants exchange sine and cosine; the second bit, or that of the next quadrant, is the sign.
+    // Odd quadrants exchange sine and cosine; the second bit of the quadrant, or of the next one,
+    // is the sign.
     let (sine, cosine) = if quadrant & 1 == 0 {
         (sine, cosine)
     } else {

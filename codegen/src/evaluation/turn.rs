@@ -1,24 +1,24 @@
-//! Squares of four numbers at four samples, turned.
+//! Transposition of 4 × 4 blocks: four numbers at four samples.
 //!
-//! To move numbers one by one between rows and values that lie side by side would take longer than to
-//! compute them, so squares are turned in vector registers where the processor has them.
+//! Moving single numbers between rows and contiguous values would take longer than computing them.
+//! So blocks are transposed in vector registers, if the processor has them.
 
-/// Side of a square.
+/// Size of a block.
 pub(super) const SIDE: usize = 4;
 
 /// A number at four samples, or four numbers at one.
 type Side = [f64; SIDE];
 
-/// Four of them; an array would go through memory.
+/// The four sides of a block; an array would go through memory.
 type Turned = (Side, Side, Side, Side);
 
-/// A way of turning squares.
+/// An implementation of the transposition.
 pub(super) trait Turn: Copy {
-    /// Columns become rows.
+    /// Transposes a block.
     fn turn(self, a: Side, b: Side, c: Side, d: Side) -> Turned;
 }
 
-/// Number by number.
+/// Element by element.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plain;
 
@@ -30,7 +30,7 @@ impl Turn for Plain {
     }
 }
 
-/// With AVX: halves of columns are put together, then pairs of numbers interleaved.
+/// With AVX: merges halves of columns, then interleaves pairs of numbers.
 #[cfg(target_arch = "x86_64")]
 impl Turn for pulp::x86::V3 {
     #[inline(always)]

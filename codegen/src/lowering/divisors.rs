@@ -1,15 +1,15 @@
-//! A guard on everything that a program divides by.
+//! Guards on all divisors of a program.
 //!
-//! The guards that hold their nodes during the search are those that mean something to a reader. When the
-//! search is over, whatever else is divided by is guarded too, so that no configuration gives 0/0. No
-//! operation is added: a divisor is computed anyway.
+//! The guards that hold their nodes during the search have a meaning for readers. After the search,
+//! all other divisors are guarded too, so that no configuration gives 0/0. This adds no operation,
+//! since a divisor is computed anyway.
 
 use super::dag::{Dag, Definition, Edge, GuardedEdge};
 use super::{Condition, GuardedExpr};
 use crate::cas::Arena;
 use overact_description::diagnostic::InternalError;
 
-/// Puts the `conditions` on those divisors that no guard is on.
+/// Adds the `conditions` to divisors without a guard.
 ///
 /// # Errors
 /// A divisor that has no condition.
@@ -29,7 +29,7 @@ pub(super) fn guard(
     open.retain(|&node| !is_never_zero(dag, node) && !is_known(node));
     for GuardedExpr { value, condition } in conditions {
         let wanted = arena.fingerprint_at(value.handle().index());
-        // The value itself, or its negative.
+        // The value itself or its negative.
         let meant = |&node: &usize| {
             let edges = [false, true].map(|negative| Edge::new(node, negative));
             let agrees = |edge: &Edge| dag.fingerprint(*edge).agrees(&wanted);
@@ -59,7 +59,9 @@ pub(super) fn guard(
     }
 }
 
-/// Whether a divisor is a constant, or guarded already. What may only not be negative may be zero.
+/// Whether a divisor is a constant or guarded already.
+///
+/// A guard against negative values only does not exclude zero.
 fn is_never_zero(dag: &Dag, node: usize) -> bool {
     let is_guarded = dag.guards().iter().any(|guard| {
         guard.value.node() == node
@@ -71,8 +73,8 @@ fn is_never_zero(dag: &Dag, node: usize) -> bool {
     is_guarded || matches!(dag.definition(node), Definition::Constant(_))
 }
 
-/// Where the guard of a divisor stands: before the first guard whose value is computed from it, so that a
-/// quotient without value is told as what it is; else after those of the same leg.
+/// Position of a divisor's guard: before the first guard that depends on it, so that a quotient
+/// without value is reported as such; otherwise after those of the same leg.
 fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
     let guards = dag.guards();
     let needs = |guard: &GuardedEdge| dag.needed([guard.value.node()].into_iter())[node];
@@ -93,7 +95,7 @@ fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
     }
 }
 
-/// The leg that a condition is about.
+/// The leg of a condition.
 fn leg(condition: &Condition) -> Option<&str> {
     match condition {
         Condition::Reach { leg, .. }

@@ -1,101 +1,105 @@
-//! Programs of legs that are alike, side by side: what all share is computed once, what belongs to a leg in lanes
-//! of vectors, a leg in each.
+//! Programs of equal legs in SIMD lanes: shared values are computed once, those of a leg in one
+//! lane each.
 //!
-//! The program is that of one leg and of what is shared. The numbers in which legs differ are an input of it,
-//! [`Lanes::constants`]; what depends on these alone is a number itself, so it is computed here and not by the
-//! generated code.
+//! The program computes one leg and the shared values. The numbers by which legs differ are its
+//! input [`Lanes::constants`]. Values that depend on these numbers alone are constants themselves,
+//! so they are computed here and not by the generated code.
 
 use super::program::{Array, Entry, Operand, Program, Step};
 
-/// Where numbers of legs stand in a row.
+/// Positions of the legs' numbers in an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OfLegs {
-    /// That of the first leg.
+    /// Position of the first leg's number.
     pub first: usize,
-    /// From one leg's to the next one's.
+    /// Distance from one leg's number to the next.
     pub stride: usize,
-    /// The first so many legs have one; the column of another leg was eliminated.
+    /// Number of legs that have one; columns of later legs were eliminated.
     pub count: usize,
 }
 
 impl OfLegs {
-    /// That of a leg, if it has one.
+    /// Position of a leg's number, if the leg has one.
     #[must_use]
     pub fn of(self, leg: usize) -> Option<usize> {
         (leg < self.count).then_some(self.first + leg * self.stride)
     }
 }
 
-/// Where a column of the program stands among those of the function.
+/// Position of a column of the program among those of the function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Column {
-    /// It is shared by all legs, and stands here.
+    /// Shared by all legs, at this position.
     Shared(usize),
-    /// Legs have one each.
+    /// One column per leg.
     OfLegs(OfLegs),
 }
 
-/// Whose the elements of an input are.
+/// Ownership of the elements of an input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Elements {
-    /// All legs share them.
+    /// Shared by all legs.
     Shared,
     /// The legs' constants, [`Lanes::constants`].
     Constants,
-    /// So many of each leg, one leg after the other.
+    /// This many for each leg, one leg after the other.
     InTurn(usize),
-    /// Of each leg these of another input's; zero for legs that have none.
+    /// Elements of another input for each leg; zero for legs that have none.
     Scattered {
-        /// Which input.
+        /// Index of the other input.
         of: usize,
-        /// For each element where it stands.
+        /// Positions of each element.
         places: Vec<OfLegs>,
     },
 }
 
-/// What becomes of the entries of a program in lanes.
+/// Use of the entries of a program in lanes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gathered {
-    /// They are columns of the function's output, row by row, that stand here in it.
+    /// Columns of the function's output, row by row, at these positions.
     Columns(Vec<Column>),
-    /// They are added up.
+    /// Terms of sums over the legs.
     Sums(Sums),
 }
 
-/// Sums over the legs, and what follows from them.
+/// Sums over the legs, and the output computed from them.
 ///
-/// The entries are what a leg adds to each sum, what all share adds to it, and then rows of numbers of a leg that are
-/// needed again.
+/// The entries are a leg's contributions to each sum, then the shared contributions, and then rows
+/// of a leg's numbers that are used again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sums {
-    /// How many sums there are.
+    /// Number of sums.
     pub count: usize,
-    /// What follows from the sums, its first input: the function's output, or what the legs' rows are multiplied with.
+    /// Program with the sums as its first input.
+    ///
+    /// It computes the function's output, or the factor of the legs' rows.
     pub program: Program,
-    /// The rows of each leg.
+    /// Rows of each leg.
     pub rows: LegRows,
 }
 
-/// What the rows of legs are needed for.
+/// Use of the legs' rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LegRows {
-    /// There are none.
+    /// No rows.
     None,
-    /// So many of each leg. The function's output is each of them but for its last number times the program's output, and
-    /// that number added to it.
+    /// This many for each leg; each gives one number of the function's output.
+    ///
+    /// That number is the row without its last element times the program's output, plus the last
+    /// element.
     Times(usize),
-    /// So many of each leg, which are the program's second input: each number that is not zero, of all legs.
+    /// This many for each leg: the program's second input, with each nonzero number for all legs.
     Given(usize),
 }
 
 impl Sums {
-    /// The numbers of each row.
+    /// Length of each row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.program.entries.len() + 1
     }
 
-    /// The entries of a program that a leg adds, that all share, and of rows.
+    /// Splits the entries of a program: contributions of a leg, shared contributions, and rows.
     pub(crate) fn split<'e>(&self, entries: &'e [Entry]) -> [&'e [Entry]; 3] {
         let (own, rest) = entries.split_at(self.count);
         let (shared, rows) = rest.split_at(self.count);
@@ -103,17 +107,17 @@ impl Sums {
     }
 }
 
-/// Which lanes are faster than straight code.
+/// Numbers of lanes with which the program is faster than straight code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pays {
     /// Two and more.
     Always,
-    /// Four and more: with fewer the straight program runs, which stands beside.
+    /// Four and more; with fewer the straight program runs, which is generated, too.
     WithFour,
 }
 
 impl Pays {
-    /// How many lanes there have to be.
+    /// The smallest such number of lanes.
     #[must_use]
     pub const fn least(self) -> usize {
         match self {
@@ -123,31 +127,31 @@ impl Pays {
     }
 }
 
-/// A program of legs that are alike.
+/// A program of equal legs in SIMD lanes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lanes {
-    /// The program of one leg and of what is shared.
+    /// The program of one leg and of the shared values.
     pub program: Program,
     /// The function's output.
     pub output: Array,
-    /// What becomes of the program's output.
+    /// Use of the program's output.
     pub gathered: Gathered,
-    /// Which lanes are faster than straight code.
+    /// Numbers of lanes with which the program is faster than straight code.
     pub pays: Pays,
-    /// The legs' names.
+    /// Names of the legs.
     pub legs: Vec<String>,
-    /// Whose the elements of each input are.
+    /// Ownership of the elements of each input.
     pub inputs: Vec<Elements>,
-    /// What the legs' constants are, in words.
+    /// Descriptions of the legs' constants.
     pub names: Vec<String>,
-    /// The values of the legs' constants, leg by leg.
+    /// Values of the legs' constants, leg by leg.
     pub constants: Vec<Vec<f64>>,
-    /// For each guard of the program, what its value is at home in each leg.
+    /// For each guard of the program, the magnitude of its value at home in each leg.
     pub homes: Vec<Vec<f64>>,
 }
 
 impl Lanes {
-    /// For each step, whether it belongs to a leg.
+    /// For each step, whether it depends on the leg.
     #[must_use]
     pub fn of_legs(&self) -> Vec<bool> {
         let mut found: Vec<bool> = Vec::with_capacity(self.program.steps.len());
@@ -159,7 +163,7 @@ impl Lanes {
         found
     }
 
-    /// Whether an operand belongs to a leg, where `of_legs` says which steps do.
+    /// Whether an operand depends on the leg, given `of_legs` for the steps.
     #[must_use]
     pub fn is_of_leg(&self, operand: Operand, of_legs: &[bool]) -> bool {
         match operand {
@@ -169,7 +173,7 @@ impl Lanes {
         }
     }
 
-    /// Operations that are done once, and those of each leg.
+    /// Number of shared operations and of operations per leg.
     #[must_use]
     pub fn operations(&self) -> (usize, usize) {
         let counted = self.program.steps.iter().zip(self.of_legs());
@@ -185,7 +189,8 @@ impl Lanes {
         let products = match sums.rows {
             LegRows::None | LegRows::Given(_) => 0,
             LegRows::Times(of_leg) => {
-                // A number of a row is one operation if it is added, two if it is multiplied before.
+                // A number of a row takes one operation if it is added, two if it is multiplied
+                // first.
                 let adding = rows.chunks(sums.width()).filter_map(<[Entry]>::last);
                 let less = adding.filter(is_there).count() + of_leg;
                 (rows.iter().filter(is_there).count() * 2).saturating_sub(less)
@@ -196,16 +201,16 @@ impl Lanes {
     }
 }
 
-/// A program in which steps that depend on the elements of one input alone are elements of it themselves.
+/// A program whose steps that depend on one input alone are replaced by elements of that input.
 #[derive(Debug)]
 pub(crate) struct Folded {
     /// The program.
     pub(crate) program: Program,
-    /// What each element of the input is: an element or a step of the program before.
+    /// Each element of the input, as an element or a step of the original program.
     pub(crate) elements: Vec<Operand>,
 }
 
-/// Folds what depends on the elements of the input `array` alone.
+/// Folds steps that depend on elements of the input `array` alone.
 pub(crate) fn fold(program: &Program, array: usize) -> Folded {
     let mut folding = Folding {
         array,
@@ -243,11 +248,11 @@ pub(crate) fn fold(program: &Program, array: usize) -> Folded {
     }
 }
 
-/// Where a step has gone.
+/// New place of a step.
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Step(usize),
-    /// It is the value of this step of the program before, and an element once something needs it.
+    /// The value of this step of the original program; it becomes an element if it is needed.
     Constant(usize),
 }
 
@@ -291,8 +296,9 @@ impl Folding {
     }
 }
 
-/// Puts elements of an input, those of the first of some legs, into an input of their own. `places` has of each element
-/// where those of the legs stand; none if all legs share it.
+/// Moves elements of the first leg to an input of their own.
+///
+/// `places` has the positions of the legs' elements for each element; `None` if all legs share it.
 pub(crate) fn scatter(program: &mut Program, of: usize, places: &[Option<OfLegs>]) -> Elements {
     let mut found: Vec<OfLegs> = Vec::new();
     let own = program.inputs.len();

@@ -1,38 +1,40 @@
-//! How far the search of a function goes: all its limits stand here.
+//! Limits of the search for fewer operations.
 
 use overact_description::Effort;
 
-/// How far the search of one function goes.
+/// Limits of the search for one function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SearchLimits {
-    /// Whether nodes that are one operation away from others are replaced.
+    /// Whether nodes that are one operation from others are replaced.
     pub replaces: bool,
     /// Whether forms are compared at regular states, too, and not only near singular ones.
     pub compares_regular_states: bool,
-    /// How often the nodes that are two operations away from others of their heading are searched at
-    /// most, and operations that serve several of these: a later round has only what the earlier ones
-    /// opened up.
+    /// Largest number of rounds of the search for pairs.
+    ///
+    /// It searches nodes that are two operations from others of their heading, and operations that
+    /// serve several of these. A later round only examines what earlier ones made possible.
     pub pair_rounds: usize,
-    /// A function of more nodes is large: it is searched in smaller pieces, and has no walk.
+    /// Number of nodes above which a function is searched in smaller pieces and without a walk.
     pub large_nodes: usize,
-    /// Up to so many nodes are searched for pairs at once; a heading with more is searched in pieces.
+    /// Number of nodes that are searched for pairs at once; larger headings are searched in pieces.
     pub piece_nodes: usize,
-    /// The same in a large function.
+    /// The same in a function of more than [`large_nodes`](Self::large_nodes) nodes.
     pub small_piece_nodes: usize,
-    /// Up to so many nodes a function's pairs are searched as a whole, not heading by heading.
+    /// Number of nodes up to which pairs of a function are searched as a whole, not heading by
+    /// heading.
     pub whole_nodes: usize,
-    /// How many steps a walk among forms of equal cost has at most.
+    /// Largest number of steps of a walk among forms of equal cost.
     pub walk_steps: usize,
-    /// Up to so many nodes a function has such a walk.
+    /// Number of nodes up to which a function has such a walk.
     pub walk_nodes: usize,
-    /// How many steps of the walk in a row may bring nothing.
+    /// Largest number of consecutive steps of the walk that save nothing.
     pub walk_patience: usize,
-    /// How often pairs are searched after a step of the walk.
+    /// Rounds of the search for pairs after a step of the walk.
     pub walk_pair_rounds: usize,
 }
 
 impl SearchLimits {
-    /// The limits of the functions that matter most.
+    /// Limits of the most important functions.
     #[must_use]
     pub const fn of(effort: Effort) -> Self {
         match effort {
@@ -42,7 +44,7 @@ impl SearchLimits {
         }
     }
 
-    /// No node is looked at.
+    /// No search.
     pub(crate) const NONE: Self = Self {
         replaces: false,
         compares_regular_states: false,
@@ -57,7 +59,7 @@ impl SearchLimits {
         walk_pair_rounds: 0,
     };
 
-    /// Single replacements, one after the other.
+    /// Single replacements only.
     pub(crate) const SINGLE_REPLACEMENTS: Self = Self {
         replaces: true,
         ..Self::NONE
@@ -76,7 +78,7 @@ impl SearchLimits {
         ..Self::SINGLE_REPLACEMENTS
     };
 
-    /// Pairs until nothing is found, in small functions among the nodes of all headings, and a long walk.
+    /// Pairs until nothing is found, in small functions across headings, and a long walk.
     pub const THOROUGH: Self = Self {
         pair_rounds: 4,
         large_nodes: 12_000,
@@ -89,7 +91,7 @@ impl SearchLimits {
         ..Self::QUICK
     };
 
-    /// Up to so many nodes of a function with so many are searched for pairs at once.
+    /// Number of nodes that are searched for pairs at once, in a function of `nodes` nodes.
     #[must_use]
     pub(crate) const fn piece(&self, nodes: usize) -> usize {
         if nodes <= self.large_nodes {
@@ -99,7 +101,7 @@ impl SearchLimits {
         }
     }
 
-    /// The limits of a function that a controller calls: what is quick where the search is thorough.
+    /// Limits of a controller's function: quick if the search is thorough.
     #[must_use]
     pub(crate) const fn of_control(self) -> Self {
         if self.is_thorough() {
@@ -109,8 +111,9 @@ impl SearchLimits {
         }
     }
 
-    /// The limits of a second search of such a function, which goes another way: pairs several times, in small
-    /// functions among the nodes of all headings. `None` where one is enough.
+    /// Limits of a second, different search of such a function; `None` if one is enough.
+    ///
+    /// It searches pairs several times, in small functions across headings.
     #[must_use]
     pub(crate) const fn of_control_again(self) -> Option<Self> {
         if !self.is_thorough() {
@@ -124,13 +127,13 @@ impl SearchLimits {
         })
     }
 
-    /// Whether they are beyond those of a quick search.
+    /// Whether the limits exceed those of a quick search.
     #[must_use]
     pub(crate) const fn is_thorough(&self) -> bool {
         self.pair_rounds > Self::QUICK.pair_rounds
     }
 
-    /// The limits of a function that matters less: of these no more than single replacements.
+    /// Limits of less important functions: at most single replacements.
     #[must_use]
     pub(crate) const fn of_lesser_functions(self) -> Self {
         if self.replaces {

@@ -1,14 +1,16 @@
 //! Bounds of the magnitudes in a program, and guards that keep all values finite.
 //!
-//! Inputs are bounded by [`Largest`](overact_core::limits::Largest), and divisors from below by their guards. From these
-//! follows a bound of each value, as a power of two. It is rough: the bound of a sum is the sum of the bounds, whatever
-//! cancels. A value whose bound is beyond the range of the numbers may be infinite, and so may be what is computed from it.
-//! Guards on the sizes of some values ensure that no result is infinite or NaN, nor finite where a value on the way to it is
-//! not: they are placed on a smallest set of values that every path from an overflow to a result meets ([`VertexCut`]).
+//! Inputs are bounded by [`Largest`](overact_core::limits::Largest), and divisors from below by
+//! their guards. From these follows a bound of each value as a power of two. It is rough: the bound
+//! of a sum is the sum of the bounds, regardless of cancellation. A value whose bound exceeds the
+//! range of its type may be infinite, and so may its dependents. Guards on the sizes of some values
+//! ensure that no result is infinite or NaN, and that no finite result depends on an infinite
+//! value. They are placed on a smallest set of values that intersects every path from an overflow
+//! to a result ([`VertexCut`]).
 //!
-//! A few guards on values of moderate size can spare many on what is computed from them, for instance guards on the
-//! entries of an inverse matrix those on all columns that it multiplies. So the set is searched at several
-//! [thresholds](Threshold), and the one with the fewest guards is taken.
+//! A few guards on values of moderate size can replace many on their dependents. For instance,
+//! guards on an inverse matrix can replace those on all columns that it multiplies. So the set is
+//! searched at several [thresholds](Threshold), and the smallest is used.
 
 use super::program::{Condition, Guard, Operand, Operation, Program};
 use super::vertex_cut::VertexCut;
@@ -16,24 +18,24 @@ use super::{Gathered, Lanes, LegRows, Sums};
 use crate::float::Float;
 use overact_core::Limits;
 
-/// Bounds of magnitudes as powers of two, for numbers of one type.
+/// Bounds of magnitudes as powers of two, for one floating-point type.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Magnitudes {
     limits: Limits,
-    /// Exponent that no value may exceed; roundings have room above it.
+    /// Largest exponent of a value; roundings have room above it.
     most: f64,
-    /// Where guards are searched for.
+    /// Thresholds for the placement of guards.
     thresholds: &'static [Threshold],
     /// Exponent below which a divisor counts as unbounded.
     least: f64,
 }
 
-/// From which values on guards may be placed, and to what they bound them.
+/// Size of values on which guards may be placed, and the bound by a guard.
 #[derive(Debug, Clone, Copy)]
 struct Threshold {
     /// Guards are placed on values whose bound exceeds this exponent.
     large: f64,
-    /// The largest magnitude that a guard lets pass; below 2^`large`.
+    /// Largest magnitude that a guard accepts; below 2^`large`.
     guarded: f64,
 }
 
@@ -60,7 +62,7 @@ const SINGLE: [Threshold; 3] = [
 pub(crate) type Bounds<'b> = dyn Fn(usize, usize) -> f64 + 'b;
 
 impl Magnitudes {
-    /// Of programs that compute with these numbers.
+    /// Bounds for programs of a floating-point type.
     pub(crate) const fn new(float: Float) -> Self {
         match float {
             Float::F64 => Self {
@@ -78,12 +80,13 @@ impl Magnitudes {
         }
     }
 
-    /// The bound of an input by the name of its array.
+    /// Bound of an input by the name of its array.
     pub(crate) fn of_input(&self, array: &str) -> f64 {
         self.limits.largest.of(array).log2()
     }
 
-    /// Adds guards to a program. Returns bounds of its entries, whose magnitudes are at most `most_of_entries`.
+    /// Adds guards to a program. Returns bounds of its entries, whose magnitudes are at most
+    /// `most_of_entries`.
     pub(crate) fn guard(
         &self,
         program: &mut Program,
@@ -102,7 +105,7 @@ impl Magnitudes {
         bounds
     }
 
-    /// Adds guards to the programs of legs side by side.
+    /// Adds guards to the programs of legs in SIMD lanes.
     pub(crate) fn guard_lanes(&self, lanes: &mut Lanes, shared: &Bounds<'_>) {
         let constants: Vec<f64> = (0..lanes.constants.first().map_or(0, Vec::len))
             .map(|at| {
@@ -119,12 +122,12 @@ impl Magnitudes {
         let elements = lanes.inputs.clone();
         let inputs = |array: usize, index: usize| match &elements[array] {
             super::Elements::Constants => constants[index],
-            // Elements of another leg have the bound of the first one's.
+            // Elements of other legs have the bound of the first leg's.
             super::Elements::Scattered { of, .. } => self.of_input(&names[*of]),
             super::Elements::InTurn(_) => self.of_input(&names[array]),
             super::Elements::Shared => shared(array, index),
         };
-        // What is multiplied has at most half of the exponents.
+        // Factors of a product have at most half of the exponents.
         let most = match &lanes.gathered {
             Gathered::Columns(_) => f64::INFINITY,
             Gathered::Sums(_) => self.most_of_factors(),
@@ -137,12 +140,12 @@ impl Magnitudes {
         }
     }
 
-    /// The largest magnitude of numbers whose products are added up.
+    /// Largest magnitude of numbers whose products are summed.
     fn most_of_factors(&self) -> f64 {
         (self.most / 2.0 - 16.0).exp2()
     }
 
-    /// Adds guards to the program of sums over legs whose parts have these bounds.
+    /// Adds guards to the program of sums over legs, whose terms have these bounds.
     fn guard_sums(&self, sums: &mut Sums, parts: &[f64], legs: f64) {
         let (own, rest) = parts.split_at(sums.count);
         let (shared, rows) = rest.split_at(sums.count);
@@ -164,17 +167,17 @@ impl Magnitudes {
     }
 }
 
-/// Goes through the steps of a program.
+/// State of the computation of bounds for a program.
 struct Walk<'w> {
     magnitudes: Magnitudes,
     threshold: Threshold,
     program: &'w Program,
     inputs: &'w Bounds<'w>,
-    /// For each step the exponent to which its own guard bounds it.
+    /// For each step, the exponent to which its own guard bounds it.
     guarded: Vec<Option<f64>>,
-    /// For each step the exponent that bounds it from above; infinite where it may be infinite or NaN.
+    /// For each step, the exponent of its upper bound; infinite if it may be infinite or NaN.
     upper: Vec<f64>,
-    /// For each step the exponent that bounds it from below, if it is bounded away from zero.
+    /// For each step, the exponent of its lower bound, if it is bounded away from zero.
     lower: Vec<Option<f64>>,
     guards: Vec<Guard>,
 }
@@ -198,8 +201,9 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// Adds guards until no result may be infinite or NaN. Values that may be have guards where the fewest suffice; what
-    /// is computed from those is looked at again.
+    /// Adds guards until no result can be infinite or NaN.
+    ///
+    /// Guards are placed on a smallest set of steps; then the bounds are recomputed.
     fn steps(&mut self) {
         loop {
             self.bounds();
@@ -214,7 +218,7 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// Bounds of all steps.
+    /// Computes the bounds of all steps.
     fn bounds(&mut self) {
         self.upper.clear();
         self.lower.clear();
@@ -235,8 +239,11 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// The smallest set of large steps on every path from a step that becomes large to one that may be infinite or NaN and
-    /// is a result, or a value of which a finite number is made: a divisor, a direction, a velocity whose sign is taken.
+    /// The smallest set of large steps on every path from a step that becomes large to a critical
+    /// one.
+    ///
+    /// Critical is a step that may be infinite or NaN and is a result, or whose user may be finite
+    /// nevertheless: a divisor, a direction, a velocity whose sign is used.
     fn cut(&self) -> Vec<usize> {
         let mut cut = VertexCut::new(self.program.steps.len());
         for (at, step) in self.program.steps.iter().enumerate() {
@@ -256,7 +263,7 @@ impl<'w> Walk<'w> {
         cut.smallest()
     }
 
-    /// The step that an operand is, if it may be infinite or NaN.
+    /// The step of an operand, if it may be infinite or NaN.
     fn unbounded(&self, operand: Operand) -> Option<usize> {
         match operand {
             Operand::Step(at) if self.upper[at] == f64::INFINITY => Some(at),
@@ -264,7 +271,7 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// The step that an operand is, if its bound exceeds the threshold.
+    /// The step of an operand, if its bound exceeds the threshold.
     fn large(&self, operand: Operand) -> Option<usize> {
         match operand {
             Operand::Step(at) if self.upper[at] > self.threshold.large => Some(at),
@@ -272,7 +279,7 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// Bounds of the entries, with guards on those that exceed `most`.
+    /// Bounds of the entries; guards those that exceed `most`.
     fn entries(&mut self, most: f64) -> Vec<f64> {
         let mut bounds = Vec::with_capacity(self.program.entries.len());
         for entry in &self.program.entries {
@@ -288,7 +295,7 @@ impl<'w> Walk<'w> {
         bounds
     }
 
-    /// Bounds a value by a guard; its exponent.
+    /// Bounds a value by a guard; returns its exponent.
     fn guard(&mut self, operand: Operand, most: f64) -> f64 {
         self.guards.push(Guard {
             operand,
@@ -313,7 +320,7 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// The exponent that guards bound a value to from below.
+    /// Exponent of the lower bound of a value that its guards ensure.
     fn guarded_from_below(&self, operand: Operand) -> Option<f64> {
         let limits = &self.magnitudes.limits;
         let own = self.program.guards.iter().filter(|g| g.operand == operand);
@@ -357,7 +364,7 @@ impl<'w> Walk<'w> {
     }
 }
 
-/// Operands of which a result is infinite or NaN if one of them is.
+/// Operands that make the result infinite or NaN if they are.
 fn carriers(operation: Operation) -> impl Iterator<Item = Operand> {
     let (first, second) = match operation {
         Operation::Add(a, b) | Operation::Sub(a, b) | Operation::Mul(a, b) => (Some(a), Some(b)),
@@ -372,7 +379,7 @@ fn carriers(operation: Operation) -> impl Iterator<Item = Operand> {
     first.into_iter().chain(second)
 }
 
-/// Operands of which a result may be finite though they are not.
+/// Operands whose result may be finite although they are not.
 fn ends(operation: Operation) -> impl Iterator<Item = Operand> {
     let (first, second) = match operation {
         Operation::Div(_, b) | Operation::Signed(_, b) => (Some(b), None),
@@ -426,7 +433,7 @@ mod tests {
         }
     }
 
-    /// Steps whose sizes are guarded in a program with inputs up to 1000.
+    /// Steps with a size guard in a program with inputs up to 1000.
     fn guarded(float: Float, mut program: Program) -> Vec<Operand> {
         Magnitudes::new(float).guard(&mut program, &|_, _| 1e3_f64.log2(), f64::INFINITY);
         let own = program.guards.iter();
@@ -450,7 +457,7 @@ mod tests {
         assert_eq!(guarded(Float::F64, program(&squares(6), Vec::new())), []);
         let found = guarded(Float::F64, program(&squares(7), Vec::new()));
         assert_eq!(found, [Operand::Step(6)]);
-        // 1e48 would overflow, and so would what is computed from it.
+        // 1e48 would overflow, and so would its dependents.
         let found = guarded(Float::F32, program(&squares(5), Vec::new()));
         assert_eq!(found, [Operand::Step(4)]);
     }

@@ -1,22 +1,23 @@
-//! The order of a program whose results are written as soon as they are known.
+//! Order of a program whose results are written as soon as they are known, for few live values.
 //!
-//! A processor has sixteen registers, or thirty-two. A value that waits longer for its last use is written to the stack,
-//! and of a model's hundreds of results many are made of the same velocities and accelerations. Which of them is computed
-//! next is therefore chosen by how many values wait after it: the one that leaves the fewest, of equal ones the first
-//! column by column. What conditions are on comes first, of all legs: their roots and quotients take long, and do so side
-//! by side as long as no result of another leg is written between them. The steps and their results stay what they are.
+//! A processor has sixteen or thirty-two registers, and values that live longer are spilled to the
+//! stack. Many of a model's hundreds of results use the same velocities and accelerations. The next
+//! result is the one that leaves the fewest live values; of equal ones it is the first, column by
+//! column. Guarded values come first, for all legs: their roots and quotients have a long latency,
+//! and overlap as long as no result of another leg is written between them. Steps and results do
+//! not change.
 //!
-//! To tell what a result costs all has to be seen that is still to be computed for it, so of a large program only the next
-//! results are compared, the fewer the more steps there are.
+//! The cost of a result depends on all steps that it still needs. So in large programs only the
+//! next results are compared; their number decreases with the number of steps.
 
 use super::program::{Condition, Operand, Operation, Program};
 use std::collections::BTreeSet;
 
-/// The same program in an order in which few values wait for their last use.
+/// The same program, ordered for few live values.
 #[must_use]
 pub(crate) fn schedule_min_live(program: &Program) -> Program {
     let mut order = Order::new(program);
-    // Sizes are looked at wherever their values stand: nothing waits for them.
+    // Size guards are checked wherever their values are computed, so they keep nothing alive.
     let guarded = program.guards.iter();
     let guarded = guarded.filter(|guard| !matches!(guard.condition, Condition::Size { .. }));
     for step in guarded.filter_map(|guard| step(guard.operand)) {
@@ -28,41 +29,43 @@ pub(crate) fn schedule_min_live(program: &Program) -> Program {
     renumbered(program, &order.steps)
 }
 
-/// Over the square of the number of steps, how many results are compared: all that a robot of seven joints has, and ten
-/// where there are ten thousand steps. What a comparison looks at grows with the steps, and so does how often it is made.
+/// Number of compared results times the square of the number of steps.
+///
+/// It covers all results of a robot with seven joints, and ten of a program with ten thousand
+/// steps. Both the cost of a comparison and the number of comparisons grow with the steps.
 const COMPARED: usize = 1_000_000_000;
 
 /// A number of the output that has to be computed.
 struct Result {
     /// The step that computes it.
     step: usize,
-    /// By how many more values wait once it is computed, if that is known.
+    /// Change of the number of live values when it is computed, if known.
     waiting: Option<isize>,
 }
 
 struct Order<'p> {
     program: &'p Program,
-    /// How often each step is still to be used.
+    /// Remaining uses of each step.
     left: Vec<usize>,
     is_done: Vec<bool>,
-    /// The steps so far.
+    /// The steps scheduled so far.
     steps: Vec<usize>,
-    /// In the order in which they are taken where nothing else tells them apart.
+    /// Results in their default order, for ties.
     results: Vec<Result>,
-    /// Those that are not written yet.
+    /// Results that are not written yet.
     open: Vec<usize>,
-    /// How many of these are compared.
+    /// Number of these that are compared.
     compared: usize,
     /// For each step the results whose cost depends on it.
     concerned: Vec<BTreeSet<usize>>,
 }
 
-/// What is to be computed for a result, with the uses of steps by it.
+/// Steps that a result still needs, with their uses.
 #[derive(Default)]
 struct Cone {
-    /// Steps that are not done yet, operands first.
+    /// Unscheduled steps, operands first.
     new: BTreeSet<usize>,
-    /// How often steps are used by those and by the result.
+    /// Number of uses of steps by those and by the result.
     uses: Vec<(usize, usize)>,
 }
 
@@ -96,7 +99,7 @@ impl<'p> Order<'p> {
         }
     }
 
-    /// The next result: of those that are compared the one that leaves the fewest values waiting.
+    /// The next result: among those compared, the one that leaves the fewest live values.
     fn cheapest(&mut self) -> Option<usize> {
         let compared = self.open.len().min(self.compared);
         for place in 0..compared {
@@ -113,7 +116,7 @@ impl<'p> Order<'p> {
         Some(self.open.remove(cheapest))
     }
 
-    /// By how many more values wait once a cone is computed.
+    /// Change of the number of live values when a cone is computed.
     fn waiting(&self, cone: &Cone) -> isize {
         let uses = cone.uses.iter();
         uses.map(|&(step, uses)| {
@@ -127,7 +130,7 @@ impl<'p> Order<'p> {
         .sum()
     }
 
-    /// Computes a step for a result or a condition, and forgets the costs that this changes.
+    /// Schedules a step for a result or a guard, and invalidates the costs that this changes.
     fn compute(&mut self, step: usize) {
         let cone = self.cone(step);
         for &(step, uses) in &cone.uses {
@@ -139,11 +142,11 @@ impl<'p> Order<'p> {
         for &step in &cone.new {
             self.is_done[step] = true;
         }
-        // As they were, operands stand first.
+        // The original order has operands first.
         self.steps.extend(cone.new);
     }
 
-    /// What is to be computed for a result.
+    /// The steps that a result still needs.
     fn cone(&self, result: usize) -> Cone {
         let mut cone = Cone::default();
         let mut used = vec![result];
@@ -169,7 +172,7 @@ impl<'p> Order<'p> {
     }
 }
 
-/// The step that an operand is the result of.
+/// The step of an operand.
 fn step(operand: Operand) -> Option<usize> {
     match operand {
         Operand::Step(at) => Some(at),
@@ -177,7 +180,7 @@ fn step(operand: Operand) -> Option<usize> {
     }
 }
 
-/// The step beside one that is its cosine or sine: the two stay together.
+/// The adjacent step with the cosine or sine of the same angle; both stay together.
 fn partner(program: &Program, at: usize) -> Option<usize> {
     let operation = |at: usize| program.steps.get(at).map(|step| step.operation);
     let is_pair = |a: Option<Operation>, b: Option<Operation>| match (a, b) {

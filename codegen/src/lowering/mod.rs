@@ -3,20 +3,20 @@
 //! | stage | from | to |
 //! |---|---|---|
 //! | `dag/from_arena` | expressions in their arena | a graph of signed nodes, each with its fingerprint and origin |
-//! | `passes` | that graph | the same values in fewer operations; the list of passes stands there |
-//! | `divisors` | that graph | the same with a guard on all that is divided by |
+//! | `passes` | that graph | the same values in fewer operations; see its list of passes |
+//! | `divisors` | that graph | the same with a guard on every divisor |
 //! | `schedule` | that graph | the [`Program`], operands first |
 //! | `magnitudes` | a program | the same with guards that keep its values finite |
 //! | `min_live_order` | a program whose results are written one by one | the same program, ordered for few live values |
 //!
-//! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
-//! program is checked once at the end (`Program::verify`), and of the graph after every pass in builds
-//! for development: what does not hold is an [`InternalError`], a bug of the generator. The
-//! [`Cost`] of a program is counted by one rule, which the generated documentation and the snapshots quote.
+//! Unused nodes are not copied. [`SearchLimits`] limit the passes. The invariants of a program are
+//! checked once at the end (`Program::verify`), and those of the graph after every pass in
+//! development builds. A violation is an [`InternalError`], a bug of the generator. The [`Cost`] of
+//! a program is counted by one rule, which the generated documentation and the snapshots quote.
 //!
-//! Three evaluators belong to the lowering, each for a reason of its own: fingerprints (in the field, to
-//! find what is equal), the values with random errors at some states (to compare digits), and none of the
-//! program, which [`evaluation`](crate::evaluation) evaluates.
+//! The lowering has two evaluators of its own: fingerprints in the field find equal values, and
+//! values with random errors at some states compare accuracy. Programs are evaluated by
+//! [`evaluation`](crate::evaluation).
 
 mod dag;
 mod divisors;
@@ -54,20 +54,21 @@ pub struct GuardedExpr<'a> {
 /// A function as expressions.
 #[derive(Debug)]
 pub struct Expressions<'a> {
-    /// The arrays whose elements the expressions are made of.
+    /// The arrays whose elements the expressions use.
     pub inputs: Vec<Array>,
     /// The output.
     pub output: Array,
     /// The output's numbers, row-major.
     pub entries: &'a [Expr<'a>],
-    /// Conditions; one is kept if the program divides by its value or takes its root.
+    /// Guards; one is kept if the program divides by its value or takes its root.
     pub guards: Vec<GuardedExpr<'a>>,
-    /// Conditions on all that the entries divide by. They hold no node in the search: what the program
-    /// still divides by in the end is guarded.
+    /// Conditions on all divisors of the entries.
+    ///
+    /// They hold no node in the search; only divisors that remain in the program are guarded.
     pub divisors: Vec<GuardedExpr<'a>>,
 }
 
-/// Lowers the expressions of one function. Forms are compared at the `states`.
+/// Lowers the expressions of one function; forms are compared at the `states`.
 ///
 /// # Errors
 /// A bug of the generator.

@@ -1,4 +1,4 @@
-//! From the DAG to the program: the nodes that the entries need, in an order in which operands come first.
+//! Conversion of the DAG to a program: the needed nodes, operands first.
 
 use super::dag::{Angle, Dag, Definition, Edge};
 use super::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
@@ -7,7 +7,7 @@ use overact_description::diagnostic::InternalError;
 
 /// The program of a DAG whose angles are planned.
 ///
-/// Entries are visited column by column, so that the program works through leg after leg.
+/// Entries are visited column by column, so that the program proceeds leg by leg.
 ///
 /// # Errors
 /// A node that no program can compute.
@@ -53,9 +53,9 @@ struct Schedule<'d> {
     needed: Vec<bool>,
     steps: Vec<Step>,
     done: Vec<Option<Operand>>,
-    /// The steps that are the negatives of nodes.
+    /// Steps that are negatives of nodes.
     negatives: QuickMap<usize, Operand>,
-    /// The group of nodes that is computed together with each node, if it is not begun yet.
+    /// The group that is computed together with each node, until it is started.
     groups: QuickMap<usize, usize>,
     is_begun: Vec<bool>,
 }
@@ -76,7 +76,7 @@ impl<'d> Schedule<'d> {
         }
     }
 
-    /// A node or its negative; the sign of a constant is the constant's.
+    /// A node or its negative; constants include their sign.
     fn entry(&mut self, edge: Edge) -> Result<Entry, InternalError> {
         let operand = self.node(edge.node())?;
         Ok(match operand {
@@ -90,7 +90,7 @@ impl<'d> Schedule<'d> {
         })
     }
 
-    /// The operand that an edge is; a negative one is negated first.
+    /// The operand of an edge; a negative edge needs a negation first.
     fn operand(&mut self, edge: Edge) -> Result<Operand, InternalError> {
         let entry = self.entry(edge)?;
         if !entry.negative {
@@ -108,7 +108,7 @@ impl<'d> Schedule<'d> {
         Ok(negative)
     }
 
-    /// The operand that a node is, with all that is computed together with it.
+    /// The operand of a node; computes its whole group.
     fn node(&mut self, node: usize) -> Result<Operand, InternalError> {
         if let Some(&group) = self.groups.get(&node)
             && !std::mem::replace(&mut self.is_begun[group], true)
@@ -164,7 +164,7 @@ impl<'d> Schedule<'d> {
         })
     }
 
-    /// ±a ± b; operands are computed in the order in which they stand.
+    /// ±a ± b; operands are computed in this order.
     fn sum(&mut self, a: Edge, b: Edge) -> Result<Operation, InternalError> {
         if a.is_negative() && !b.is_negative() {
             let (a, b) = (self.operand(a.positive())?, self.operand(b)?);
@@ -183,7 +183,7 @@ impl<'d> Schedule<'d> {
         Operand::Step(self.steps.len() - 1)
     }
 
-    /// The element of an input array that a symbol is.
+    /// The input element of a symbol.
     fn input(&self, symbol: u32) -> Result<Operand, InternalError> {
         let element = self.dag.context().symbols[symbol as usize].element;
         let element = element.ok_or_else(|| broken("something unknown is left".to_owned()))?;
@@ -193,8 +193,10 @@ impl<'d> Schedule<'d> {
         Ok(Operand::Input { array, index })
     }
 
-    /// The guards, each once, of which only what may not be negative, or has to be positive, depends on the sign.
-    /// A system that is solved tells its determinant of each of its columns, and what divisors ask for may be it.
+    /// The guards, each once.
+    ///
+    /// Guards on signs keep the sign of their value, others do not. A linear system guards its
+    /// determinant once per column, and guards of divisors may repeat it.
     fn guards(&mut self) -> Result<Vec<Guard>, InternalError> {
         let mut all = Vec::new();
         for guard in self.dag.guards() {

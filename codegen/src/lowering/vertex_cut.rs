@@ -1,17 +1,18 @@
-//! Smallest vertex cut of a directed acyclic graph, by Dinic's maximum flow (Dinic 1970) with vertices split in two.
+//! Smallest vertex cut of a directed acyclic graph, by Dinic's maximum flow (Dinic 1970) on split
+//! vertices.
 
 use std::collections::VecDeque;
 
-/// An arc of the residual graph; the opposite arc has the number with the last bit flipped.
+/// An arc of the residual graph; the index of the opposite arc differs in the last bit.
 struct Arc {
     to: usize,
     capacity: u32,
 }
 
-/// A graph in which a smallest set of vertices is looked for that separates sources from sinks.
+/// A graph whose smallest vertex set that separates sources from sinks is computed.
 pub(super) struct VertexCut {
     arcs: Vec<Arc>,
-    /// The arcs of each half of a vertex: 2 v is where paths enter it, 2 v + 1 where they leave it.
+    /// The arcs of each half of a vertex: 2 v is the entrance, 2 v + 1 the exit.
     from: Vec<Vec<usize>>,
     vertices: usize,
 }
@@ -19,7 +20,7 @@ pub(super) struct VertexCut {
 const UNBOUNDED: u32 = u32::MAX;
 
 impl VertexCut {
-    /// Of a graph without edges.
+    /// A graph without edges.
     pub(super) fn new(vertices: usize) -> Self {
         let mut cut = Self {
             arcs: Vec::new(),
@@ -37,18 +38,19 @@ impl VertexCut {
         self.arc(2 * from + 1, 2 * to, UNBOUNDED);
     }
 
-    /// Makes a vertex one that paths begin with.
+    /// Makes a vertex a source.
     pub(super) fn source(&mut self, vertex: usize) {
         self.arc(self.begin(), 2 * vertex, UNBOUNDED);
     }
 
-    /// Makes a vertex one that paths end with.
+    /// Makes a vertex a sink.
     pub(super) fn sink(&mut self, vertex: usize) {
         self.arc(2 * vertex + 1, self.end(), UNBOUNDED);
     }
 
-    /// The smallest set of vertices that every path from a source to a sink meets, of several the one nearest to the
-    /// sinks; in ascending order.
+    /// The smallest set of vertices on every path from a source to a sink, in ascending order.
+    ///
+    /// Of several sets it is the one closest to the sinks.
     pub(super) fn smallest(mut self) -> Vec<usize> {
         while let Some(levels) = self.levels() {
             self.block(&levels);
@@ -73,7 +75,7 @@ impl VertexCut {
         }
     }
 
-    /// How many arcs each half is from the begin; none if no path is left to the end.
+    /// Distance of each half from the source, in arcs; `None` if no path to the sink is left.
     fn levels(&self) -> Option<Vec<Option<usize>>> {
         let mut levels = vec![None; self.from.len()];
         levels[self.begin()] = Some(0);
@@ -90,7 +92,7 @@ impl VertexCut {
         levels[self.end()].is_some().then_some(levels)
     }
 
-    /// Sends one unit along each path that goes up the levels, until none is left.
+    /// Finds a blocking flow: augments unit paths along the levels until none is left.
     fn block(&mut self, levels: &[Option<usize>]) {
         let mut next = vec![0; self.from.len()];
         let mut path: Vec<usize> = Vec::new();
@@ -110,7 +112,7 @@ impl VertexCut {
                 next[at] += skipped;
                 path.push(self.from[at][next[at]]);
             } else {
-                // A dead end: the arc to it is not taken again.
+                // A dead end: its arcs are not tried again.
                 next[at] = self.from[at].len();
                 let Some(arc) = path.pop() else {
                     return;
@@ -132,7 +134,7 @@ impl VertexCut {
         }
     }
 
-    /// The halves from which flow could still be sent to the end.
+    /// The halves from which flow can still reach the sink.
     fn reaching_end(&self) -> Vec<bool> {
         let mut reaches = vec![false; self.from.len()];
         reaches[self.end()] = true;
@@ -157,7 +159,7 @@ mod tests {
 
     #[test]
     fn the_narrowest_place_is_found() {
-        // Three sources meet in two vertices, from which four sinks follow.
+        // Three sources meet in two vertices, which four sinks follow.
         let mut cut = VertexCut::new(9);
         (0..3).for_each(|v| cut.source(v));
         (5..9).for_each(|v| cut.sink(v));

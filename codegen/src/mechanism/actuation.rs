@@ -1,20 +1,21 @@
-//! Which actuators determine the platform's motion at home.
+//! Actuators that determine the platform's motion at the home configuration.
 
 use super::{BodyIndex, End, Leg, Mechanism, Motion, TwistCoordinate};
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::singular_values::SingularValues;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// What is left of a row of J_p^inv without its part along rows before it, relative to its length,
-/// below which it adds little to them, and below which it adds nothing.
+/// Part of a row of J_p^inv outside the span of earlier rows, relative to its length: below the
+/// first value the row is nearly dependent, below the second it is dependent.
 const DEPENDENT: [f64; 2] = [1e-2, 1e-6];
 /// Singular value of a leg's Jacobian, relative to the largest, up to which it counts as zero.
 const SINGULAR: f64 = 1e-9;
 /// Length of a row of J_p^inv, relative to the fastest joint's, below which it is rounding.
 const ROUNDING: f64 = 1e-10;
 
-/// Velocity components that a leg's end shares with what it ends on, per independent coordinate. Those of
-/// chains are relative to the body that the chain starts from, in its axes.
+/// Velocity components that a leg's end shares with its end body, per independent coordinate.
+///
+/// Those of chains are relative to the body that the chain starts from, in that body's axes.
 #[must_use]
 pub(super) fn shared_velocities(
     mechanism: &Mechanism,
@@ -33,7 +34,7 @@ pub(super) fn shared_velocities(
     }
 }
 
-/// Relative velocity of the point that a chain ends at, per rate of the skeleton's joints.
+/// Relative velocity of a chain's end point, per joint rate of the skeleton.
 fn on_skeleton(
     mechanism: &Mechanism,
     leg: usize,
@@ -60,8 +61,9 @@ fn on_skeleton(
     Some(velocities.select_rows(&end.shared_components()))
 }
 
-/// Velocity of a point of a body and its angular velocity, per rate of the skeleton's joints: of a chain's
-/// body the rates follow from those of the bodies that it joins.
+/// Velocity of a point of a body and its angular velocity, per joint rate of the skeleton.
+///
+/// For a body of a chain they follow from the rates of the two bodies that the chain connects.
 fn on_body(
     mechanism: &Mechanism,
     body: BodyIndex,
@@ -111,8 +113,9 @@ fn on_platform(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
     columns.select_rows(&end.shared_components())
 }
 
-/// The joint rates of a leg per velocity of its end, by least squares; `None` if its Jacobian is
-/// not finite.
+/// Joint rates of a leg per velocity of its end, by least squares.
+///
+/// `None` if the Jacobian is not finite.
 #[must_use]
 pub(super) fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
     let found = SingularValues::new(&leg.closure_jacobian(joints))?;
@@ -120,7 +123,7 @@ pub(super) fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f6
 }
 
 impl Mechanism {
-    /// The rates of the joints of a leg without an end, per independent coordinate, which they are.
+    /// Joint rates of a leg without an end, which are independent coordinates themselves.
     fn coordinate_rates(&self, leg: usize) -> DMatrix<f64> {
         let own = self.coordinate_range(leg);
         DMatrix::from_fn(own.len(), self.dof(), |row, column| {
@@ -128,8 +131,9 @@ impl Mechanism {
         })
     }
 
-    /// The rates of all joints per twist coordinate at the home configuration, n_t x r; `None` if a
-    /// leg is not regular there.
+    /// Rates of all joints per twist coordinate at the home configuration, n_t × r.
+    ///
+    /// `None` if a leg is singular there.
     #[must_use]
     pub(crate) fn rates_at_home(&self) -> Option<DMatrix<f64>> {
         if self.is_tree() {
@@ -150,8 +154,10 @@ impl Mechanism {
         Some(all)
     }
 
-    /// The first actuators that determine the platform's motion at home, well conditioned if there are
-    /// such: r of them, or fewer if all together do not determine it.
+    /// The first r actuators that determine the platform's motion at home, preferably well
+    /// conditioned.
+    ///
+    /// Fewer than r if all actuators together do not determine it.
     #[must_use]
     pub(crate) fn independent_actuators(&self) -> Vec<usize> {
         let Some(rates) = self.rates_at_home() else {
@@ -168,15 +174,15 @@ impl Mechanism {
     }
 }
 
-/// The first rows that are independent: longer than `least`, and with more than a part `limit` of their
-/// length outside the span of those before.
+/// The first independent rows: longer than `least`, and with more than the fraction `limit` of
+/// their length outside the span of earlier rows.
 fn independent_rows(matrix: &DMatrix<f64>, least: f64, limit: f64) -> Vec<usize> {
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut chosen = Vec::new();
     for (index, row) in matrix.row_iter().enumerate() {
         let row = row.transpose();
         let mut rest = row.clone();
-        // Twice removes what rounding left of the first time.
+        // The second pass removes the rounding errors of the first.
         for _ in 0..2 {
             for known in &basis {
                 rest -= known * known.dot(&rest);

@@ -1,4 +1,4 @@
-//! From a description to a checked mechanism: mobility, closure at home, leg singularities.
+//! Checks a description and returns the mechanism: mobility, closure at home, singular legs.
 
 use super::actuation::{rates_per_velocity, shared_velocities};
 use super::explain;
@@ -15,13 +15,13 @@ use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 /// Checks a description and finds its home configuration.
 ///
 /// # Errors
-/// All that is wrong with the mechanism, each at the place of the leg or the platform.
+/// All errors of the mechanism, each at the leg or the platform that causes it.
 pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut mechanism = plain(description);
     let mut errors = Diagnostics::new();
     let is_too_large = check_sizes(description, &mut errors);
     if is_too_large {
-        // Geometry of so many joints takes more time than anybody waits for.
+        // The computations for so many joints would take too long.
         return Err(errors);
     }
     check_actuators(description, &mechanism, &mut errors);
@@ -29,8 +29,8 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     if !mechanism.is_parasitic() {
         check_structure(description, &mechanism, &rough, &mut errors);
     } else if errors.is_empty() {
-        // The legs may not allow a rough pose, which is then moved onto their closures. With joints near those, an
-        // allowed pose stays as it is.
+        // If the legs do not allow the rough pose, it is moved onto their closures. An allowed pose
+        // stays as it is; the joints start near the closures.
         let near = approach(&mechanism, &rough);
         let found = closed(&mechanism, &near).or_else(|| closed(&mechanism, &rough));
         if let Some(found) = found {
@@ -67,7 +67,8 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     Ok(mechanism)
 }
 
-/// The actuators of case 2, the first that determine the platform's motion where none are given.
+/// Chooses the actuators of the actuator projection: those given, or the first that determine the
+/// motion.
 fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Result<(), Diagnostics> {
     let independent = mechanism.independent_actuators();
     let r = mechanism.dof();
@@ -83,8 +84,8 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
     Ok(())
 }
 
-/// Legs that are alike shall have the same parameters; a robot without legs side by side has nothing to
-/// be symmetric about.
+/// Equal legs get the same parameters; a robot without several legs on a platform has no such
+/// symmetry.
 fn base_columns(description: &Description) -> BaseColumns {
     let has_loop = |leg: &overact_description::Leg| leg.end.is_some();
     let by_kind = if description.legs.iter().any(has_loop) {
@@ -95,7 +96,7 @@ fn base_columns(description: &Description) -> BaseColumns {
     description.base_columns.unwrap_or(by_kind)
 }
 
-/// The mechanism as the description says it, with an empty home configuration.
+/// The mechanism of a description, with an empty home configuration.
 pub(super) fn plain(description: &Description) -> Mechanism {
     let joint = |j: &overact_description::Joint| Joint {
         name: j.name.value.clone(),
@@ -139,15 +140,16 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
         home: Home::default(),
-        // Chosen when the home configuration is known, if the description leaves it open.
+        // Chosen after the home configuration is known, unless the description gives them.
         base_columns: base_columns(description),
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
         still: Vec::new(),
     }
 }
 
-/// The legs as seen from the point of a fixed axis where the platform's origin is: the mechanism's base
-/// frame has its origin there, so that the platform turns about it.
+/// The legs relative to the platform's origin on a fixed axis.
+///
+/// The base frame of the mechanism has its origin there, so the platform rotates about it.
 fn on_axis(description: &Description, mut legs: Vec<Leg>) -> Vec<Leg> {
     if let Some(platform) = &description.platform {
         for leg in &mut legs {
@@ -182,17 +184,18 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
             ..mechanism.clone()
         };
         let home = Home::refine(mechanism, &rough).ok().map(at);
-        // Where legs block directions, a rough pose is none that they allow.
+        // If the legs block directions, the rough pose need not be one that they allow.
         let home = home.or_else(|| closed(mechanism, &rough));
         let left = home.and_then(|at| Some((Mobility::at_home(&at)?, Parasitic::at_home(&at))));
         errors.push(explain::too_few_actuators(description, mechanism, left));
     }
 }
 
-/// Legs that block some motions, but not all that the description leaves out, while the actuators drive
-/// what is left, at home and beside it: a robot with more degrees of freedom, see [`mobility`](super::mobility).
-/// Legs that block nothing at all are rods that stand for parallelograms, which hold the platform in ways
-/// that are not described.
+/// Reports legs that allow more motions than described, if the actuators drive all of them.
+///
+/// The motions are counted at home and at poses near it; see [`mobility`](super::mobility). Such a
+/// robot has more degrees of freedom than described. Legs that block nothing at all are accepted:
+/// they are rods that replace parallelograms, whose constraints are not described.
 fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Diagnostics> {
     let beside = random_states(mechanism, 3, 5).into_iter().map(|state| {
         let home = Home::new(mechanism, state.pose, state.joints);
@@ -201,7 +204,7 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
             ..mechanism.clone()
         }
     });
-    // One configuration alone may be singular.
+    // A single configuration may be singular.
     let loose = |at: &Mechanism| {
         Mobility::at_home(at).filter(|mobility| {
             let left = mobility.count();
@@ -218,14 +221,14 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
     }
 }
 
-/// How many times worse conditioned than the best choice independent coordinates may be.
+/// Largest ratio of the condition of chosen independent coordinates to that of the best choice.
 const WEAK: f64 = 1e3;
 
-/// Most independent joints of a leg: operations of its model grow with their square, the time of the search
-/// with the fourth power.
+/// Largest number of independent joints of a leg: operation counts of its model grow quadratically,
+/// the time of the search with the fourth power.
 const CHAIN: usize = 100;
 
-/// Reports legs without a joint, or with more than can be worked on; whether there are too many.
+/// Reports legs without joints or with too many; returns whether any has too many.
 fn check_sizes(description: &Description, errors: &mut Diagnostics) -> bool {
     let mut is_too_large = false;
     for leg in &description.legs {
@@ -256,8 +259,7 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) -> bool {
     is_too_large
 }
 
-/// The joints of every leg must be determined by the motion of its end. Legs of one shape share their
-/// errors.
+/// Reports legs whose joint rates their end's motion does not determine, once for each shape.
 fn check_structure(
     description: &Description,
     mechanism: &Mechanism,
@@ -276,8 +278,8 @@ fn check_structure(
     }
 }
 
-/// The independent coordinates of a platform with parasitic motion are as many as the legs leave, and determine the
-/// others at home.
+/// Reports independent coordinates of a platform with parasitic motion if their number is wrong or
+/// they do not determine the others at home.
 fn check_independent(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
     match rated(mechanism) {
         Some(found) if found.condition < WEAK * found.least => {}
@@ -285,7 +287,7 @@ fn check_independent(description: &Description, mechanism: &Mechanism, errors: &
     }
 }
 
-/// The home configuration as it is given, which may not close the legs.
+/// The home configuration as given, which need not close the legs.
 pub(super) fn rough_home(description: &Description) -> Home {
     let joints = description.legs.iter().flat_map(|leg| {
         let own = leg
@@ -297,7 +299,7 @@ pub(super) fn rough_home(description: &Description) -> Home {
     });
     let joints: Vec<f64> = joints.collect();
     let pose = match &description.platform {
-        // Of a robot with chains, those of its skeleton and branches.
+        // A robot with chains has the joints of its skeleton and branches as pose.
         None => {
             let own = plain(description).coordinate_joints().into_iter();
             own.map(|at| joints[at]).collect()
@@ -335,7 +337,7 @@ fn home_pose(platform: &overact_description::Platform) -> Vec<f64> {
     pose
 }
 
-/// The leg must be able to follow every motion of the platform.
+/// Reports a leg that cannot follow every motion of the platform.
 fn check_mobility(
     description: &Description,
     mechanism: &Mechanism,

@@ -1,4 +1,4 @@
-//! The home configuration: from rough joint positions to ones that close every leg.
+//! The home configuration: refines rough joint positions until every leg closes.
 
 use super::singular_values::SingularValues;
 use super::{Leg, Mechanism};
@@ -12,10 +12,12 @@ pub struct Home {
     pub pose: Vec<f64>,
     /// Positions of all independent joints.
     pub joints: Vec<f64>,
-    /// Those of the actuated joints.
+    /// Positions of the actuated joints.
     pub actuators: Vec<f64>,
-    /// For the roots in the closed form of the first leg's joints, in order, whose sign is an element of an array:
-    /// where that leg stands for others of another working mode. Its own are those of home.
+    /// Sign inputs of the square roots in the first leg's closed form, in order.
+    ///
+    /// A root has one if the leg's code is shared with legs of other working modes. The leg's own
+    /// signs are those of home.
     pub signs: Vec<Option<InputElement>>,
 }
 
@@ -53,7 +55,7 @@ impl Home {
     }
 }
 
-/// Why a leg has no home configuration.
+/// The reason why a leg has no home configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum HomeError {
     /// Newton's iteration ends with this distance between leg end and platform (m, rad).
@@ -63,7 +65,7 @@ pub(crate) enum HomeError {
         /// Remaining distance.
         gap: f64,
     },
-    /// The leg's joint rates are not determined by the platform's motion.
+    /// The platform's motion does not determine the leg's joint rates.
     Singular {
         /// Index of the leg.
         leg: usize,
@@ -74,19 +76,19 @@ pub(crate) enum HomeError {
 
 /// Largest gap that counts as closed, m and rad.
 const CLOSED: f64 = 1e-10;
-/// The gap of a leg that is closed but for rounding, m.
+/// Gap of a leg that is closed up to rounding, m.
 const FINELY: f64 = 1e-15;
 /// Condition number of a leg's Jacobian above which the leg counts as singular.
 const SINGULAR: f64 = 1e7;
-/// Condition number above which a leg is looked at more closely.
+/// Condition number above which singularity is examined more closely.
 const DOUBTFUL: f64 = 1e3;
-/// Largest entry of the shared rows of a leg's Jacobian, relative to that of all rows, below which the
-/// shared rows are zero.
+/// Largest entry of the shared rows of a leg's Jacobian, relative to that of all rows, below which
+/// the shared rows count as zero.
 const ROUNDING: f64 = 1e-10;
 const STEPS: usize = 200;
-/// Steps in which the gap has to become smaller; where it does not, the leg is out of reach.
+/// Steps within which the gap has to decrease; otherwise the target is out of the leg's reach.
 const PATIENCE: usize = 20;
-/// By this factor, at least.
+/// Factor by which the gap has to decrease, at least.
 const PROGRESS: f64 = 0.99;
 
 impl Home {
@@ -125,8 +127,9 @@ impl Home {
     }
 }
 
-/// The joints of all legs on a platform as near to closing as they come at the pose as it is, which may be none
-/// that the legs allow.
+/// Joint positions of all legs that come closest to closing at the given platform pose.
+///
+/// The pose need not be one that the legs allow.
 #[must_use]
 pub(super) fn approach(mechanism: &Mechanism, rough: &Home) -> Home {
     let mut near = rough.clone();
@@ -148,8 +151,10 @@ enum Failure {
     Singular(f64),
 }
 
-/// Damped Gauss-Newton on all closure equations of a leg, until the largest remaining error is below
-/// `closed`: where it ends, and that error.
+/// Solves a leg's closure equations by damped Gauss-Newton until the largest error is below
+/// `closed`.
+///
+/// Returns the joint positions and that error.
 fn iterate(
     leg: &Leg,
     start: &[f64],
@@ -163,7 +168,7 @@ fn iterate(
     for step in 0..STEPS {
         let error = leg.closure_error(&q, target);
         gap = error.amax();
-        // The maximum of numbers passes over NaN.
+        // `max` ignores NaN.
         if error.iter().any(|e| !e.is_finite()) {
             return (q, f64::INFINITY);
         }
@@ -198,15 +203,15 @@ fn iterate(
     (q, gap)
 }
 
-/// Joint positions that close a leg and at which it is regular.
+/// Joint positions that close a leg, if the leg is regular there.
 fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<Vec<f64>, Failure> {
     let (q, gap) = iterate(leg, start, target, CLOSED);
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
     let mut condition = condition_of_closure(leg, &q);
-    // The gap of a leg that has to be stretched goes with the square of its bend: it closes while it is still
-    // bent, and shows what it is only where the gap gets no smaller.
+    // The gap of a stretched leg is quadratic in its bend: it counts as closed while the leg is
+    // still bent. Only iteration until the gap stops decreasing shows the singularity.
     if condition > DOUBTFUL {
         let (end, _) = iterate(leg, &q, target, 0.0);
         condition = condition.max(condition_of_closure(leg, &end));
@@ -217,11 +222,11 @@ fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<
     Ok(q)
 }
 
-/// Condition number of a leg's closure at some joint positions.
+/// Condition number of a leg's closure at given joint positions.
 fn condition_of_closure(leg: &Leg, joints: &[f64]) -> f64 {
     let jacobian = leg.closure_jacobian(joints);
-    // An end that does not move along the axes that it shares has rounding for a Jacobian, which may be
-    // well conditioned.
+    // An end that does not move along its shared axes has a Jacobian of rounding errors, which may
+    // be well conditioned.
     if jacobian.amax() < ROUNDING * leg.end_jacobian(joints).amax() {
         f64::INFINITY
     } else {
@@ -229,7 +234,7 @@ fn condition_of_closure(leg: &Leg, joints: &[f64]) -> f64 {
     }
 }
 
-/// Joint positions that close a leg and at which it is regular, wherever the iteration ends.
+/// Joint positions that close a leg regularly, however far from the start.
 pub(super) fn close_anywhere(
     leg: &Leg,
     start: &[f64],
@@ -238,7 +243,7 @@ pub(super) fn close_anywhere(
     close(leg, start, target).ok()
 }
 
-/// How near the iteration brings a leg's end to its target (m, rad).
+/// Smallest distance between a leg's end and its target that the iteration reaches (m, rad).
 pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> f64 {
     let (q, _) = iterate(leg, start, target, CLOSED);
     leg.closure_error(&q, target).norm()
@@ -247,8 +252,8 @@ pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64
 /// Condition number of a leg's Jacobian up to which it is far from singular.
 pub(super) const REGULAR: f64 = 50.0;
 
-/// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the leg's condition
-/// number where it does is not below a limit.
+/// Joint positions near `start` that close a leg; `None` if the iteration fails or the condition is
+/// too large.
 #[must_use]
 pub(super) fn close_within(
     leg: &Leg,
@@ -260,20 +265,21 @@ pub(super) fn close_within(
     (condition(&leg.closure_jacobian(&q)) < limit).then_some(q)
 }
 
-/// Up to which condition number a leg counts as regular that is worse conditioned at home than usual ones are.
+/// Largest condition number that counts as regular for a leg that is poorly conditioned at home.
 #[must_use]
 pub(super) fn lenient_limit(leg: &Leg, home: &[f64]) -> f64 {
     (4.0 * condition(&leg.closure_jacobian(home))).max(REGULAR)
 }
 
-/// Joint positions that close a leg as well as numbers can, from some that close it. Columns that depend on
-/// each other through the closure do so no better than it is closed.
+/// Joint positions that close a leg up to rounding, from positions that close it.
+///
+/// Columns that are dependent because of the closure are only as dependent as the leg is closed.
 #[must_use]
 pub(super) fn close_finely(leg: &Leg, q: &[f64], target: &nalgebra::Isometry3<f64>) -> Vec<f64> {
     iterate(leg, q, target, FINELY).0
 }
 
-/// Ratio of the largest and smallest singular value; infinite for entries that are not finite.
+/// Ratio of the largest to the smallest singular value; infinite for entries that are not finite.
 pub(super) fn condition(matrix: &DMatrix<f64>) -> f64 {
     SingularValues::new(matrix).map_or(f64::INFINITY, |found| found.condition())
 }

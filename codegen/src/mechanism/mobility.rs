@@ -1,49 +1,54 @@
-//! Which motions the legs leave to the platform, whatever motion the description gives it.
+//! Motions that the legs allow the platform, regardless of the described motion.
 //!
-//! The platform is taken as a free body with the twist t of six components. A leg's joints give its end
-//! the velocities J q̇ in the components that it shares with the platform; E t are the platform's there.
-//! What no joint gives is blocked: Nᵀ E t = 0 with N the left null space of J. The legs together leave the
-//! null space of all these rows. Motions that none of the shared components feel, such as the rotation
-//! of a platform that is a point, are nobody's and count neither here nor there.
+//! The platform is treated as a free body with the twist t of six components. A leg's joints give
+//! its end the velocities J q̇ in the components that it shares with the platform, whose velocities
+//! there are E t. Velocities that no joint produces are blocked: Nᵀ E t = 0, with N the left null
+//! space of J. All legs together allow the null space of these rows. Motions without effect on
+//! shared components, such as the rotation of a platform that is a point, are not counted.
 //!
-//! Every leg follows the described motion, so what the legs leave contains it; the two are equal if their
-//! dimensions are. Where the legs leave L motions, more than the r described, and the actuators drive all L,
-//! the robot has L degrees of freedom, also if its controller keeps it to r of them: of its n torques
-//! n - L are internal, not n - r, so torques of least norm and preloads of the described robot would move
-//! the platform aside, and gravity and inertia on the L - r others need torques that its model does not
-//! know. Whether n > L makes no difference, for the actuators that hold the platform are those that move
-//! it. It is another robot, and refused. Where the actuators do not drive all L, the legs are
-//! rods that stand for parallelograms, or the platform hangs loose: the description can't tell which, and the
-//! first is the usual way to describe a Delta.
+//! Every leg follows the described motion, so the allowed motions contain it. The two are equal if
+//! their dimensions are. Let the legs allow L motions, more than the r described ones.
+//!
+//! - If the actuators drive all L motions, the robot has L degrees of freedom, even if its
+//!   controller uses only r of them. Of its n torques, n - L are internal, not n - r. Least-norm
+//!   torques and preloads of the described robot would then move the platform in the other L - r
+//!   directions. Gravity and inertia in these directions need torques that the model lacks. This
+//!   holds for n > L too, because the same actuators move and hold the platform. Such a description
+//!   is an error.
+//! - Otherwise the legs are rods that replace parallelograms, or the platform is loose. The
+//!   description cannot distinguish the two. It is accepted, since the former is the usual
+//!   description of a Delta.
 
 use super::numeric::{platform_frame, target};
 use super::singular_values::{SingularValues, rank};
 use super::{End, JointKind, Leg, Mechanism, Motion, TwistCoordinate};
 use nalgebra::{DMatrix, Matrix3};
 
-/// The motions that the legs leave to the platform at a configuration.
+/// Motions that the legs allow the platform at a configuration.
 #[derive(Debug)]
 pub(super) struct Mobility {
-    /// Twists that the legs leave, as columns.
+    /// Allowed twists, as columns.
     pub(super) allowed: DMatrix<f64>,
-    /// The shared velocities of all legs per twist.
+    /// Shared velocities of all legs per twist.
     felt: DMatrix<f64>,
-    /// Rank of what the legs block.
+    /// Rank of the blocked directions.
     pub(super) blocked: usize,
 }
 
-/// Singular values, of matrices with entries of about one, up to which they count as zero.
+/// Singular values, of matrices with entries of order one, up to which they count as zero.
 const ROUNDING: f64 = 1e-7;
 
 impl Mobility {
-    /// At the home configuration, which closes the legs, lengths in units of the robot's own; `None` for a
-    /// robot without a platform and for values that are not finite.
+    /// The allowed motions at home, where the legs close, with lengths relative to the robot's
+    /// size.
+    ///
+    /// `None` for a robot without a platform and for values that are not finite.
     pub(super) fn at_home(mechanism: &Mechanism) -> Option<Self> {
         let home = &mechanism.home;
         Self::at(mechanism, &home.pose, &home.joints)
     }
 
-    /// At a pose and joint positions that close the legs.
+    /// The allowed motions at a pose and joint positions that close the legs.
     pub(super) fn at(mechanism: &Mechanism, pose: &[f64], joints: &[f64]) -> Option<Self> {
         let platform = mechanism.platform.as_ref()?;
         let size = mechanism.length_scale();
@@ -67,27 +72,28 @@ impl Mobility {
         })
     }
 
-    /// Number of independent motions that the legs leave.
+    /// Number of independent motions that the legs allow.
     pub(super) fn count(&self) -> usize {
         rank(&(&self.felt * &self.allowed), ROUNDING)
     }
 
-    /// The part of each of the six directions, three along and three about axes, that the legs leave.
+    /// Component of each of six directions, three along and three about the axes, in the allowed
+    /// motions.
     pub(super) fn parts(&self) -> [f64; 6] {
         let felt = &self.felt * &self.allowed;
         let Some(found) = SingularValues::new(&felt) else {
             return [0.0; 6];
         };
-        // What is not felt is left out.
+        // Motions without effect on shared components are left out.
         let none = found.null_space(ROUNDING);
         let kept = &self.allowed - (&self.allowed * &none) * none.transpose();
         std::array::from_fn(|row| kept.row(row).norm())
     }
 
-    /// Number of the given platform motion's coordinates that the legs leave.
+    /// Number of coordinates of the described motion that the legs allow.
     pub(super) fn of(&self, motion: Motion) -> usize {
         let wanted = directions(motion);
-        // Both within what is left and within the motion: dim A + dim B - dim (A + B).
+        // Dimension of the intersection: dim A + dim B - dim (A + B).
         let both =
             DMatrix::from_fn(
                 6,
@@ -100,7 +106,7 @@ impl Mobility {
         self.allowed.ncols() + wanted.ncols() - rank(&both, ROUNDING)
     }
 
-    /// How many of the motions that the legs leave are determined by the actuators.
+    /// Number of allowed motions that the actuators determine.
     pub(super) fn driven(&self, mechanism: &Mechanism) -> usize {
         let home = &mechanism.home;
         let size = mechanism.length_scale();
@@ -148,7 +154,7 @@ fn scaled_jacobian(leg: &Leg, joints: &[f64], size: f64) -> DMatrix<f64> {
     jacobian
 }
 
-/// The twists of a motion as columns.
+/// Twists of a motion, as columns.
 fn directions(motion: Motion) -> DMatrix<f64> {
     let twist = motion.twist();
     let row = |coordinate: &TwistCoordinate| match coordinate {
@@ -160,7 +166,7 @@ fn directions(motion: Motion) -> DMatrix<f64> {
     })
 }
 
-/// One matrix above another.
+/// Stacks two matrices vertically.
 pub(super) fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(
         above.nrows() + below.nrows(),

@@ -1,11 +1,12 @@
-//! The mechanism: bodies, joints, legs and platform as checked, plain data.
+//! The checked mechanism: bodies, joints, legs and platform as plain data.
 //!
 //! Frames follow Khalil and Kleinfinger's modified Denavit-Hartenberg convention. From the antecedent
 //! frame to frame j: Rot(z, γ) Trans(z, b) Rot(x, α) Trans(x, d) Rot(z, θ) Trans(z, r). The joint's
 //! position is θ (revolute) or r (prismatic), plus a constant. Every leg starts at a base frame and
 //! ends on the platform: its last frame is fixed on the platform (`Rigid`), or its origin coincides
-//! with a platform point (`Point`). A robot without platform is a tree, one leg without an end, or a skeleton
-//! with chains: legs that end on bodies of other legs, some of which may carry branches, legs without an end.
+//! with a platform point (`Point`). A robot without a platform is a tree, one leg without an end,
+//! or a skeleton with chains. Chains are legs that end on bodies of other legs; they may carry
+//! branches, which are legs without an end.
 
 mod actuation;
 mod check;
@@ -33,14 +34,14 @@ pub use overact_description::{
     StandardParameter,
 };
 
-/// A joint and the body behind it.
+/// A joint and the body that it moves.
 #[derive(Debug, Clone)]
 pub struct Joint {
     /// Name, unique in its leg.
     pub name: String,
     /// Revolute, prismatic or fixed.
     pub kind: JointKind,
-    /// The joint whose frame this one starts from; `None` for the leg's base frame.
+    /// The joint that this joint's frame is described from; `None` for the leg's base frame.
     pub antecedent: Option<usize>,
     /// MDH γ.
     pub gamma: Angle,
@@ -54,23 +55,25 @@ pub struct Joint {
     pub theta: Angle,
     /// MDH r, m; for a prismatic joint the constant part.
     pub r: Number,
-    /// The joint position as a linear combination of the leg's independent joint variables: itself
-    /// with factor one, or others for a dependent joint. Empty for a fixed joint.
+    /// The joint position as a linear combination of the leg's independent joint variables.
+    ///
+    /// An independent joint has itself with factor one, a coupled joint has others, a fixed joint
+    /// none.
     pub variable: Vec<(usize, Ratio)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// The body's and the joint's standard parameters that are not absent.
+    /// Standard parameters of the body and the joint that are not absent.
     pub parameters: Vec<StandardParameter>,
-    /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
-    /// the variable.
+    /// Gear ratio, rotor turns per unit of the variable, of a motor that moves other joints and
+    /// carries no body.
     pub motor: Option<f64>,
-    /// What the position adds to its torque, with an unknown coefficient.
+    /// Position-dependent torque with an unknown coefficient.
     pub spring: Option<Spring>,
-    /// The torque of the position that is known, without any coefficient.
+    /// Position-dependent torque that is known, without a coefficient.
     pub known: Option<Formula>,
-    /// The Stribeck velocity of its friction, rad/s or m/s.
+    /// Stribeck velocity of the joint's friction, rad/s or m/s.
     pub stribeck: Option<Number>,
-    /// The load in proportion to which it has friction, with an unknown coefficient.
+    /// Load to which friction is proportional, with an unknown coefficient.
     pub load: Option<Spring>,
 }
 
@@ -87,18 +90,21 @@ impl Joint {
 pub struct Leg {
     /// Name, unique in the robot.
     pub name: String,
-    /// Legs written once and placed several times share this number.
+    /// Index of the leg's shape, equal for legs that are described once and placed several times.
     pub shape: usize,
     /// The leg's base frame in the robot's base frame.
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform, or on a body; `None` for a tree.
+    /// End of the leg on the platform or on a body; `None` for a tree.
     pub end: Option<End>,
-    /// The body of the skeleton, or of a chain before, that the leg starts from; `None` for the ground.
-    /// The leg's base frame stands in this body's frame.
+    /// The body of the skeleton, or of an earlier chain, that the leg starts from; `None` for the
+    /// ground.
+    ///
+    /// The leg's base frame is relative to this body's frame.
     pub base_body: Option<BodyIndex>,
-    /// The body of the skeleton, or of a chain before, that the leg ends on; `None` for the platform.
+    /// The body of the skeleton, or of an earlier chain, that the leg ends on; `None` for the
+    /// platform.
     pub end_body: Option<BodyIndex>,
 }
 
@@ -116,9 +122,9 @@ impl Leg {
 /// The platform.
 #[derive(Debug, Clone)]
 pub struct Platform {
-    /// Which motions it has.
+    /// The platform's motion.
     pub motion: Motion,
-    /// Its inertial parameters that are not absent.
+    /// Inertial parameters of the platform that are not absent.
     pub parameters: Vec<StandardParameter>,
     /// Inertial parameters of the payload, if the robot may carry one.
     pub payload: Option<Vec<StandardParameter>>,
@@ -129,13 +135,13 @@ pub struct Platform {
 pub struct Mechanism {
     /// Name of the Rust type.
     pub name: String,
-    /// One sentence.
+    /// One sentence about the robot.
     pub summary: String,
-    /// Where the description comes from.
+    /// Origin of the description.
     pub source: String,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
-    /// The named constants of its description, in SI units, for the reader of generated code.
+    /// Named constants of the description, in SI units, for readers of generated code.
     pub constants: Vec<(String, f64)>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
@@ -143,11 +149,11 @@ pub struct Mechanism {
     pub legs: Vec<Leg>,
     /// The home configuration, which fixes assembly and working modes.
     pub home: Home,
-    /// Kept actuators of case 2, as indices among the actuators.
+    /// Kept actuators of the actuator projection, as indices among the actuators.
     pub kept_actuators: Vec<usize>,
-    /// Which columns stand for the base parameters.
+    /// Columns that represent the base parameters.
     pub base_columns: BaseColumns,
-    /// Coordinates of the pose of a platform with parasitic motion which its closures keep at zero.
+    /// Pose coordinates of a platform with parasitic motion that the closures keep at zero.
     pub still: Vec<usize>,
 }
 
@@ -169,7 +175,7 @@ impl Mechanism {
             .collect()
     }
 
-    /// The joint behind an index.
+    /// The joint of an index.
     #[must_use]
     pub fn joint(&self, index: JointIndex) -> &Joint {
         &self.legs[index.leg].joints[index.joint]
@@ -186,29 +192,31 @@ impl Mechanism {
         actuated.map(|(i, _)| i).collect()
     }
 
-    /// Whether the robot has no loop: neither a platform nor chains on a skeleton.
+    /// Whether the robot has no loop: neither a platform nor chains.
     #[must_use]
     pub fn is_tree(&self) -> bool {
         self.platform.is_none() && self.skeleton().is_none()
     }
 
-    /// The leg that the chains hang on, and whose joints are independent coordinates: the first of a robot without
-    /// platform that has legs with ends.
+    /// The leg that chains are attached to, whose joints are independent coordinates.
+    ///
+    /// It is the first leg of a robot without a platform that has legs with ends.
     #[must_use]
     pub fn skeleton(&self) -> Option<&Leg> {
         let has_chains = self.platform.is_none() && self.legs.iter().any(|leg| leg.end.is_some());
         self.legs.first().filter(|_| has_chains)
     }
 
-    /// Which of [`Self::joints`] are the independent coordinates, of a robot without a platform: those of legs
-    /// without an end, the skeleton and the branches that bodies of chains carry.
+    /// Indices in [`Self::joints`] of the independent coordinates of a robot without a platform.
+    ///
+    /// They are the joints of legs without an end: the skeleton and the branches on chains.
     #[must_use]
     pub fn coordinate_joints(&self) -> Vec<usize> {
         let free = (0..self.legs.len()).filter(|&leg| self.legs[leg].end.is_none());
         free.flat_map(|leg| self.leg_range(leg)).collect()
     }
 
-    /// The joints of a leg without an end among the independent coordinates.
+    /// Range of the joints of a leg without an end among the independent coordinates.
     #[must_use]
     pub fn coordinate_range(&self, leg: usize) -> std::ops::Range<usize> {
         let before = self.legs[..leg].iter().filter(|own| own.end.is_none());
@@ -216,14 +224,14 @@ impl Mechanism {
         start..start + self.legs[leg].independent().count()
     }
 
-    /// The joints that are the independent coordinates, of a robot without a platform.
+    /// The joints that are independent coordinates of a robot without a platform.
     fn independent_joints(&self) -> Vec<JointIndex> {
         let all = self.joints();
         let own = self.coordinate_joints().into_iter();
         own.map(|at| all[at]).collect()
     }
 
-    /// r, the number of independent platform coordinates; for a tree, of its joints, and of those of a
+    /// r, the number of independent coordinates: of the platform, or of the joints of a tree or
     /// skeleton.
     #[must_use]
     pub fn dof(&self) -> usize {
@@ -242,7 +250,7 @@ impl Mechanism {
         )
     }
 
-    /// Name of a joint for people: `leg1.2`, or `2` in a robot of one leg without a platform.
+    /// Name of a joint for messages: `leg1.2`, or `2` in a robot of one leg without a platform.
     #[must_use]
     pub fn joint_name(&self, index: JointIndex) -> String {
         let joint = &self.joint(index).name;
@@ -252,7 +260,7 @@ impl Mechanism {
         format!("{}.{joint}", self.legs[index.leg].name)
     }
 
-    /// What the actuators are called, in every spelling.
+    /// Names of the actuators, in all spellings.
     #[must_use]
     pub fn named_actuators(&self) -> ActuatorNames {
         let joints = self.joints();
@@ -265,14 +273,14 @@ impl Mechanism {
         ActuatorNames::new(single, self.actuated().iter().map(name))
     }
 
-    /// The usual names of the actuators.
+    /// Preferred names of the actuators.
     #[must_use]
     pub fn actuator_names(&self) -> Vec<String> {
         self.named_actuators().usual().map(str::to_owned).collect()
     }
 
-    /// Names of the independent coordinates, in the order of the twist: the platform's, or the joints of
-    /// a robot without one.
+    /// Names of the independent coordinates in the order of the twist: of the platform, or of the
+    /// joints of a robot without one.
     #[must_use]
     pub fn coordinates(&self) -> Vec<String> {
         match &self.platform {
@@ -284,8 +292,9 @@ impl Mechanism {
         }
     }
 
-    /// Names of the pose's numbers, a quaternion's `qw`, `qx`, `qy`, `qz` among them: the platform's, or the
-    /// joints' positions of a robot without one.
+    /// Names of the pose's components, such as `qw`, `qx`, `qy`, `qz` of a quaternion.
+    ///
+    /// They are those of the platform, or the joints of a robot without one.
     #[must_use]
     pub fn pose_coordinates(&self) -> Vec<String> {
         match &self.platform {
@@ -297,8 +306,8 @@ impl Mechanism {
         }
     }
 
-    /// Names of the independent joints of a robot without a platform; those of a skeleton without the
-    /// leg's.
+    /// Names of the independent joints of a robot without a platform; joints of a skeleton are
+    /// named without their leg.
     fn own_names(&self, form: impl Fn(String) -> String) -> Vec<String> {
         let joints = self.independent_joints().into_iter();
         let name = |j: JointIndex| match self.skeleton() {

@@ -1,5 +1,5 @@
-//! Numeric kinematics of a mechanism: positions, orientations and Jacobians as floats. They serve the
-//! checks at the home configuration, before any symbol is derived.
+//! Numeric kinematics: positions, orientations and Jacobians in floating point, for the checks at
+//! the home configuration that precede the derivation.
 
 use super::{BodyIndex, End, Joint, JointKind, Leg, Mechanism, Motion, Placement};
 use nalgebra::{
@@ -25,7 +25,7 @@ pub fn placement_isometry(placement: &Placement) -> Isometry3<f64> {
 }
 
 impl Joint {
-    /// From the antecedent frame to the joint's frame, for joint position `q`.
+    /// Displacement from the antecedent frame to the joint's frame, for joint position `q`.
     fn displacement(&self, q: f64) -> Isometry3<f64> {
         let (theta, r) = match self.kind {
             JointKind::Revolute => (self.theta.value() + q, self.r.value()),
@@ -63,14 +63,15 @@ impl Leg {
         frames
     }
 
-    /// The end's velocity and angular velocity per independent joint rate, 6 x m, in the base frame
-    /// at the end's origin.
+    /// Velocity and angular velocity of the end per independent joint rate, 6 × m.
+    ///
+    /// Both are in the base frame, at the end's origin.
     #[must_use]
     pub fn end_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
         self.end_jacobian_at(&self.frames(q))
     }
 
-    /// [`Self::end_jacobian`] where the frames of all joints are known.
+    /// [`Self::end_jacobian`] from the known frames of all joints.
     #[must_use]
     pub fn end_jacobian_at(&self, frames: &[Isometry3<f64>]) -> DMatrix<f64> {
         match frames.last() {
@@ -149,7 +150,7 @@ pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at), rotation)
 }
 
-/// Where a leg's last frame has to be for a platform frame; of a point end only the position counts.
+/// Required position of a leg's last frame for a platform frame; a point end uses only its origin.
 #[must_use]
 pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
     match end {
@@ -162,9 +163,11 @@ pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
 }
 
 impl Mechanism {
-    /// Where a leg's last frame has to be at a pose, in the frame that the leg's base stands in: the
-    /// robot's base frame, or that of the body that it starts from. Of `joints`, the positions of all
-    /// joints, those of the legs before are read. `None` for a leg without an end.
+    /// Required position of a leg's last frame at a pose, relative to the frame of the leg's base.
+    ///
+    /// That is the robot's base frame, or the frame of the body that the leg starts from. `joints`
+    /// holds the positions of all joints, but only earlier legs are read. `None` for a leg without
+    /// an end.
     #[must_use]
     pub fn target(&self, leg: usize, pose: &[f64], joints: &[f64]) -> Option<Isometry3<f64>> {
         let end = self.legs[leg].end.as_ref()?;
@@ -176,8 +179,7 @@ impl Mechanism {
         Some(target(end, &(from * carrier)))
     }
 
-    /// The frame in the robot's base frame that a leg's base stands in at a pose; of `joints` those of the
-    /// legs before are read.
+    /// Frame of the leg's base body in the robot's base frame; reads `joints` of earlier legs only.
     #[must_use]
     pub fn ground_of(&self, leg: usize, pose: &[f64], joints: &[f64]) -> Isometry3<f64> {
         let body = self.legs[leg].base_body;
@@ -186,13 +188,14 @@ impl Mechanism {
         })
     }
 
-    /// The frame of a body that carries chains in the robot's base frame.
+    /// Frame of a body that carries chains, in the robot's base frame.
     #[must_use]
     pub fn body_frame(&self, body: BodyIndex, pose: &[f64], joints: &[f64]) -> Isometry3<f64> {
         self.frames_of(body.leg, pose, joints)[body.joint]
     }
 
-    /// The frames of a leg's joints in the robot's base frame. The joints of legs without an end are the pose.
+    /// Frames of a leg's joints in the robot's base frame. The joints of legs without an end are
+    /// the pose.
     #[must_use]
     pub(crate) fn frames_of(
         &self,
@@ -211,7 +214,7 @@ impl Mechanism {
 }
 
 impl Leg {
-    /// The components of the six-vector (position, orientation) that the leg's end shares with the
+    /// Components of the six-vector (position, orientation) that the leg's end shares with the
     /// platform.
     #[must_use]
     pub(crate) fn shared_components(&self) -> Vec<usize> {
@@ -219,8 +222,7 @@ impl Leg {
         end.map_or_else(Vec::new, End::shared_components)
     }
 
-    /// By how much the leg's end misses its target, in the components that it shares with it (m, rad,
-    /// in the base frame).
+    /// Closure error of the leg's end in its shared components (m, rad, in the base frame).
     #[must_use]
     pub fn closure_error(&self, q: &[f64], target: &Isometry3<f64>) -> DVector<f64> {
         let last = self.frames(q).pop().unwrap_or(*target);
@@ -233,15 +235,17 @@ impl Leg {
         )
     }
 
-    /// The rows of [`Self::end_jacobian`] of the shared components.
+    /// Rows of [`Self::end_jacobian`] of the shared components.
     #[must_use]
     pub(crate) fn closure_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
         self.end_jacobian(q).select_rows(&self.shared_components())
     }
 }
 
-/// As many rows as there are columns, in ascending order: in turn the one whose part outside the span of those
-/// before is longest. Fewer, where the matrix has not that rank.
+/// Indices of well conditioned rows, as many as columns, in ascending order.
+///
+/// Greedy: each step takes the row with the longest part outside the span of the rows before.
+/// Returns fewer rows if the rank is smaller.
 #[must_use]
 pub(crate) fn best_conditioned(matrix: &DMatrix<f64>) -> Vec<usize> {
     let mut rest = matrix.clone();
@@ -249,7 +253,7 @@ pub(crate) fn best_conditioned(matrix: &DMatrix<f64>) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     while chosen.len() < matrix.ncols() {
         let free = (0..rest.nrows()).filter(|row| !chosen.contains(row));
-        // Rounding does not decide between equals: the first of them is taken.
+        // Rounding does not decide between equal rows: the first is taken.
         let longest = free.fold(None, |best: Option<(usize, f64)>, row| {
             let length = rest.row(row).norm();
             match best {
@@ -272,7 +276,7 @@ pub(crate) fn best_conditioned(matrix: &DMatrix<f64>) -> Vec<usize> {
 }
 
 impl Mechanism {
-    /// The joint positions of one leg within q_t.
+    /// Range of a leg's joint positions within q_t.
     #[must_use]
     pub fn leg_range(&self, leg: usize) -> std::ops::Range<usize> {
         let start = self.legs[..leg]
@@ -282,9 +286,11 @@ impl Mechanism {
         start..start + self.legs[leg].independent().count()
     }
 
-    /// The rows of the six-vector (velocity, angular velocity) of a leg's end that are independent at
-    /// home and determine the leg's joint rates, in ascending order: of legs that block directions of a
-    /// platform with parasitic motion the best conditioned ones, of others the first.
+    /// Independent rows of a leg's end velocity that determine the joint rates at home, in
+    /// ascending order.
+    ///
+    /// Rows refer to the six-vector (velocity, angular velocity). Legs that block directions of a
+    /// platform with parasitic motion use the best conditioned rows, others the first.
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];
@@ -310,8 +316,7 @@ impl Mechanism {
         selected
     }
 
-    /// A length that is typical of the robot, m: the mean distance of the legs' ends from their bases
-    /// at home.
+    /// Typical length of the robot, m: mean distance of the legs' ends from their bases at home.
     #[must_use]
     pub fn length_scale(&self) -> f64 {
         let reach = |(index, leg): (usize, &Leg)| {

@@ -1,10 +1,11 @@
-//! Platforms that move aside while they move: free bodies whose legs block directions that change with the
-//! pose, such as that of a 3-RPS.
+//! Platforms with parasitic motion: free bodies whose legs block directions that change with the
+//! pose, as in a 3-RPS.
 //!
-//! At a pose the legs block directions A t = 0, and leave L twists t. Where the same L directions are left
-//! beside it, one of the platform's motions may be chosen for them. Where they turn with the pose, L of
-//! the six coordinates of t determine the others, t = D v, with a D that depends on the pose. D has the
-//! condition of the L rows of what is left that belong to the chosen coordinates.
+//! At a pose the legs block directions A t = 0 and allow L twists t. If the allowed twists are the
+//! same at nearby poses, a platform motion with these coordinates describes the robot. If they
+//! change with the pose, L of the six coordinates of t determine the others: t = D v, with D
+//! dependent on the pose. The condition number of D is that of the L rows of the chosen
+//! coordinates.
 
 use super::home::Home;
 use super::mobility::{Mobility, end_velocities, stacked};
@@ -13,21 +14,22 @@ use super::singular_values::SingularValues;
 use super::{Mechanism, Motion};
 use nalgebra::{DMatrix, DVector, Quaternion, UnitQuaternion, Vector3};
 
-/// What is left to a platform with parasitic motion. Directions are three along and three about the axes.
+/// Allowed directions of a platform with parasitic motion, indexed three along and three about the
+/// axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Parasitic {
     /// The L directions that determine the others, best conditioned at home.
     pub(super) independent: Vec<usize>,
-    /// Those that follow from them, at home or beside it.
+    /// Dependent directions, at home or near it.
     pub(super) following: Vec<usize>,
-    /// Ratio of the largest and smallest singular value of the rows of the independent ones at home.
+    /// Condition number of the rows of the independent directions at home.
     pub(super) condition: f64,
 }
 
-/// How far beside home it is looked, rad, and in units of the robot's length.
+/// Distance of the nearby poses from home, rad and in units of the robot's length.
 const BESIDE: f64 = 0.1;
-/// Singular value of directions of length one, those at home and those beside it, above which they differ,
-/// and the part of a direction above which it is there. Directions turn by some of [`BESIDE`].
+/// Smallest singular value at which directions at home and near it differ, and smallest component
+/// that counts. Directions rotate by a fraction of [`BESIDE`].
 const TURNED: f64 = 1e-4;
 /// Largest gap of a leg that counts as closed, m and rad.
 const CLOSED: f64 = 1e-10;
@@ -37,8 +39,9 @@ const STEPS: usize = 30;
 const ROUNDING: f64 = 1e-9;
 
 impl Parasitic {
-    /// What is left to a free platform at home, where all legs close; `None` if other directions are left to it
-    /// nowhere near, if their number differs beside home, and for a motion that is not free.
+    /// Allowed directions of a free platform at home, where all legs close.
+    ///
+    /// `None` if they do not change near home, if their number does, or if the motion is not free.
     pub(super) fn at_home(mechanism: &Mechanism) -> Option<Self> {
         let motion = mechanism.platform.as_ref()?.motion;
         if motion.of_pose() != Motion::Spatial {
@@ -71,7 +74,7 @@ impl Parasitic {
     }
 }
 
-/// The rows, as many as columns, that are best conditioned; the first of those that are equally so.
+/// The best conditioned rows, as many as columns; the first of equally good choices.
 fn best_rows(matrix: &DMatrix<f64>) -> Option<(Vec<usize>, f64)> {
     let choices = choices(matrix.nrows(), matrix.ncols()).into_iter();
     let rated = choices.filter_map(|rows| {
@@ -85,15 +88,16 @@ fn best_rows(matrix: &DMatrix<f64>) -> Option<(Vec<usize>, f64)> {
     })
 }
 
-/// All choices of `count` of the numbers below `of`, in order.
+/// All subsets of `count` numbers below `of`, in order.
 fn choices(of: usize, count: usize) -> Vec<Vec<usize>> {
     let all = (0..1_usize << of).filter(|set| set.count_ones() as usize == count);
     let members = |set| (0..of).filter(|at| set >> at & 1 == 1).collect();
     all.map(members).collect()
 }
 
-/// The mechanism with its home displaced by a twist, lengths in units of the robot's, and from there brought
-/// back onto its closures.
+/// The mechanism with its home displaced by a twist and projected onto the closures.
+///
+/// Lengths are in units of the robot's.
 fn beside(mechanism: &Mechanism, twist: &DVector<f64>) -> Option<Mechanism> {
     let mut start = mechanism.home.clone();
     let mut step = twist.clone();
@@ -102,9 +106,10 @@ fn beside(mechanism: &Mechanism, twist: &DVector<f64>) -> Option<Mechanism> {
     closed(mechanism, &start)
 }
 
-/// The mechanism of a free platform with a home near `start` at which all legs close, by Newton's iteration on
-/// all closures: pose and joints together, by the smallest step, and on to rounding. `None` if it does not get
-/// there.
+/// The mechanism of a free platform with a home near `start` that closes all legs.
+///
+/// Newton's iteration on all closures with the least-norm step of pose and joints, until rounding.
+/// `None` if it does not converge.
 pub(super) fn closed(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
     if mechanism.platform.as_ref()?.motion.of_pose() != Motion::Spatial {
         return None;
@@ -114,13 +119,13 @@ pub(super) fn closed(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
     let mut joints = start.joints.clone();
     for _ in 0..STEPS {
         let (jacobian, error) = closures(mechanism, &pose, &joints)?;
-        // The maximum of numbers passes over NaN.
+        // `max` ignores NaN.
         if error.iter().any(|missed| !missed.is_finite()) {
             return None;
         }
         let missed = error.amax();
         if missed < CLOSED {
-            // Where steps get no nearer, what is left is rounding.
+            // When steps do not reduce the error any more, the rest is rounding.
             if found
                 .as_ref()
                 .is_some_and(|(known, _)| missed > 0.5 * known)
@@ -151,7 +156,7 @@ impl Mechanism {
         platform.is_some_and(|own| matches!(own.motion, Motion::Parasitic { .. }))
     }
 
-    /// Of a platform with parasitic motion, which of x, y, z, rx, ry, rz are independent.
+    /// Independent coordinates among x, y, z, rx, ry, rz of a platform with parasitic motion.
     #[must_use]
     pub fn independent_coordinates(&self) -> Option<Vec<usize>> {
         match self.platform.as_ref()?.motion {
@@ -162,9 +167,11 @@ impl Mechanism {
         }
     }
 
-    /// D of t = D v at a pose and joints that close the legs of a platform with parasitic motion, 6 x r; `None`
-    /// where the legs leave another number of motions than there are independent coordinates, or these do
-    /// not determine the others.
+    /// D of t = D v for a platform with parasitic motion, 6 × r, at a pose and joints that close
+    /// the legs.
+    ///
+    /// `None` if the number of allowed motions differs from that of the independent coordinates, or
+    /// if these do not determine the others.
     #[must_use]
     pub(crate) fn platform_jacobian(&self, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
         let own = self.independent_coordinates()?;
@@ -178,8 +185,10 @@ impl Mechanism {
     }
 }
 
-/// Condition number of some coordinates as independent ones, and the choice that is best: of a platform that
-/// moves aside, at home, where all legs close. `None` where the legs leave another number of motions.
+/// Rates the chosen independent coordinates of a platform with parasitic motion against the best
+/// choice.
+///
+/// Evaluated at home, where all legs close. `None` if the number of allowed motions differs.
 pub(super) fn rated(mechanism: &Mechanism) -> Option<Rated> {
     let own = mechanism.independent_coordinates()?;
     let left = Mobility::at_home(mechanism)?.allowed;
@@ -195,9 +204,9 @@ pub(super) fn rated(mechanism: &Mechanism) -> Option<Rated> {
     })
 }
 
-/// How well chosen coordinates determine the others, beside the best choice.
+/// Condition of the chosen independent coordinates and of the best choice.
 pub(super) struct Rated {
-    /// Ratio of the largest and smallest singular value of the chosen rows.
+    /// Condition number of the chosen rows.
     pub(super) condition: f64,
     /// The best choice.
     pub(super) best: Vec<usize>,
@@ -205,7 +214,7 @@ pub(super) struct Rated {
     pub(super) least: f64,
 }
 
-/// What all legs' ends miss, and how platform and joints take it away: J q̇ - E t.
+/// Closure errors of all legs and their Jacobian with respect to pose and joints: J q̇ - E t.
 fn closures(
     mechanism: &Mechanism,
     pose: &[f64],
@@ -232,7 +241,7 @@ fn closures(
     Some((jacobian, DVector::from_vec(errors)))
 }
 
-/// Moves a free platform's pose by a small twist.
+/// Displaces a free platform's pose by a small twist.
 fn displace(pose: &mut [f64], twist: &DVector<f64>) {
     for axis in 0..3 {
         pose[axis] += twist[axis];

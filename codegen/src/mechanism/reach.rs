@@ -1,4 +1,4 @@
-//! Legs that do not close from the home that was given: whether they close at all, and where.
+//! Search for closed positions of a leg that does not close from the given home.
 
 use super::home::{close_anywhere, nearest};
 use super::structure::size;
@@ -6,21 +6,21 @@ use super::{End, JointKind, Leg};
 use crate::cas::Stream;
 use nalgebra::Isometry3;
 
-/// What becomes of a leg that does not close from its rough home.
+/// Result of the search for a leg that does not close from its rough home.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Reach {
-    /// It closes at these joint positions, from which home can be given.
+    /// It closes at these joint positions, which may serve as home.
     Elsewhere(Vec<f64>),
-    /// Its end gets to the place, but not into the orientation that the platform has there.
+    /// Its end reaches the position, but not the orientation of the platform.
     Turned,
-    /// Its end stays away by at least this distance, m.
+    /// Its end stays at least this distance away, m.
     Away(f64),
 }
 
-/// Starts of the iteration.
+/// Number of starts of the iteration.
 const STARTS: usize = 60;
 
-/// Looks for joint positions that close the leg, from many starts.
+/// Searches joint positions that close the leg, from many starts.
 #[must_use]
 pub(super) fn look(leg: &Leg, rough: &[f64], target: &Isometry3<f64>) -> Reach {
     let starts = starts(leg, rough, target);
@@ -53,7 +53,7 @@ pub(super) fn look(leg: &Leg, rough: &[f64], target: &Isometry3<f64>) -> Reach {
     }
 }
 
-/// The end without its orientation.
+/// The end with its position only.
 fn as_point(end: &End) -> End {
     match end {
         End::Rigid(placement) => End::Point {
@@ -79,7 +79,7 @@ fn starts(leg: &Leg, rough: &[f64], target: &Isometry3<f64>) -> Vec<Vec<f64>> {
     starts
 }
 
-/// An angle between -π and π.
+/// The equivalent angle between -π and π.
 #[must_use]
 pub(super) fn wrapped(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};

@@ -1,43 +1,45 @@
-//! Singular values, and what follows from them: rank, condition, pseudo-inverse, null space. Every
-//! such decision about a mechanism is made here.
+//! Singular values, and the rank, condition number, pseudo-inverse and null space from them.
 //!
-//! One-sided Jacobi (Hestenes): plane rotations from the right make the columns of A V orthogonal; their
-//! lengths are the singular values. For matrices of a leg's size that costs little, finds small
-//! singular values to full relative accuracy, and takes nearly equal ones, and more columns than rows,
-//! like any others. The result is checked by its own residual |A V - U Σ|, which is rounding by
-//! construction, and by the orthogonality of the columns, which only the iteration brings.
+//! All such decisions about a mechanism are made here.
+//!
+//! One-sided Jacobi (Hestenes): plane rotations from the right make the columns of A V orthogonal;
+//! their lengths are the singular values. For matrices of a leg's size this is cheap and computes
+//! small singular values to full relative accuracy. Nearly equal values, and more columns than
+//! rows, need no special treatment. The result is checked by the residual |A V - U Σ|, which is
+//! rounding by construction, and by the orthogonality of the columns, which depends on convergence.
 
 use nalgebra::DMatrix;
 
 /// A = U Σ Vᵀ, in descending order of the singular values.
 #[derive(Debug, Clone)]
 pub(super) struct SingularValues {
-    /// As many as the matrix has columns; those beyond its rows are zero.
+    /// One for each column of the matrix; those beyond the number of rows are zero.
     values: Vec<f64>,
-    /// V: a column for each singular value, also where that is zero.
+    /// V: one column for each singular value, including zero ones.
     right: DMatrix<f64>,
     /// A V = U Σ.
     scaled_left: DMatrix<f64>,
 }
 
-/// Cosine of the angle between two columns below which they are orthogonal.
+/// Cosine of the angle between two columns below which they count as orthogonal.
 const ORTHOGONAL: f64 = 16.0 * f64::EPSILON;
-/// Cosine of that angle above which the iteration has not done its work.
+/// Cosine of that angle above which the iteration has not converged.
 const RESIDUAL: f64 = 1e-12;
-/// Sweeps over all pairs of columns. Convergence is quadratic: six to ten are usual.
+/// Largest number of sweeps over all pairs of columns. Convergence is quadratic: six to ten are
+/// usual.
 const SWEEPS: usize = 60;
-/// Size of a column, relative to the largest, below which its direction is rounding.
+/// Length of a column, relative to the largest, below which its direction is rounding.
 const NEGLIGIBLE: f64 = 1e-15;
 
 impl SingularValues {
-    /// The singular values of a matrix; `None` for entries that are not finite, and if the iteration
-    /// does not end.
+    /// The singular values of a matrix; `None` if an entry is not finite or the iteration does not
+    /// converge.
     #[must_use]
     pub(super) fn new(matrix: &DMatrix<f64>) -> Option<Self> {
         if matrix.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        // Scaled to entries of about one, so that no square overflows.
+        // Scaled to entries of order one, so that no square overflows.
         let size = matrix.amax();
         let scale = if size > 0.0 { size } else { 1.0 };
         let mut columns = matrix / scale;
@@ -62,7 +64,7 @@ impl SingularValues {
         (matrix - &self.scaled_left * self.right.transpose()).amax()
     }
 
-    /// The largest singular value; zero of an empty matrix.
+    /// The largest singular value; zero for an empty matrix.
     #[must_use]
     pub(super) fn largest(&self) -> f64 {
         self.values.first().copied().unwrap_or(0.0)
@@ -74,8 +76,8 @@ impl SingularValues {
         self.values.iter().filter(|value| **value > least).count()
     }
 
-    /// Ratio of the largest and the smallest of the min(rows, columns) singular values; infinite for a
-    /// matrix of zeros.
+    /// Ratio of the largest to the smallest of the min(rows, columns) singular values; infinite for
+    /// a zero matrix.
     #[must_use]
     pub(super) fn condition(&self) -> f64 {
         let count = self.scaled_left.nrows().min(self.values.len());
@@ -85,14 +87,15 @@ impl SingularValues {
         }
     }
 
-    /// Orthonormal directions that the matrix maps to less than `least` times their length, as columns.
+    /// Orthonormal directions that the matrix maps to less than `least` times their length, as
+    /// columns.
     #[must_use]
     pub(super) fn null_space(&self, least: f64) -> DMatrix<f64> {
         let rank = self.rank(least);
         self.right.columns_range(rank..).into_owned()
     }
 
-    /// The pseudo-inverse, in which singular values up to `least` count as zero.
+    /// The pseudo-inverse; singular values up to `least` count as zero.
     #[must_use]
     pub(super) fn pseudo_inverse(&self, least: f64) -> DMatrix<f64> {
         let rank = self.rank(least);
@@ -111,7 +114,7 @@ pub(super) fn rank(matrix: &DMatrix<f64>, least: f64) -> usize {
     SingularValues::new(matrix).map_or(0, |found| found.rank(least))
 }
 
-/// Rotates every pair of columns until it is orthogonal; the largest cosine of an angle that was found.
+/// Makes every pair of columns orthogonal by a rotation; returns the largest cosine before.
 fn sweep(columns: &mut DMatrix<f64>, right: &mut DMatrix<f64>) -> f64 {
     let mut worst: f64 = 0.0;
     let negligible = NEGLIGIBLE * longest(columns);
@@ -141,7 +144,7 @@ fn longest(columns: &DMatrix<f64>) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// Cosine of the angle between two columns; `None` where one of them is rounding.
+/// Cosine of the angle between two columns; `None` if one of them is rounding.
 fn cosine(columns: &DMatrix<f64>, a: usize, b: usize, negligible: f64) -> Option<f64> {
     let (first, second) = (columns.column(a), columns.column(b));
     let lengths = [first.norm(), second.norm()];
@@ -205,7 +208,7 @@ mod tests {
     fn nearly_equal_singular_values_are_no_obstacle() {
         let mut stream = Stream::new(6);
         for _ in 0..2000 {
-            // A rotation with a small disturbance, as the Jacobian of a leg with crossing axes is one.
+            // A rotation with a small disturbance, like the Jacobian of a leg with crossing axes.
             let rotation = random(3, 3, &mut stream).qr().q();
             let disturbance = 10.0_f64.powf(-6.0 + 10.0 * stream.number());
             let matrix = rotation + random(3, 3, &mut stream) * disturbance.min(1e-2);

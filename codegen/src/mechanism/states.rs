@@ -1,5 +1,5 @@
-//! Random regular states of a mechanism, found numerically: poses around home with joints that close
-//! every leg in the working mode of the home configuration.
+//! Random regular states of a mechanism: poses around home, with joints that close every leg in the
+//! working mode of the home configuration.
 
 use super::home::{REGULAR, close_finely, close_within, condition, lenient_limit};
 use super::parasitic::closed;
@@ -19,37 +19,39 @@ pub struct State {
     pub acceleration: Vec<f64>,
 }
 
-/// How states spread around home: in units of the robot's length scale, and in radians.
+/// Distribution of states around home, in units of the robot's length scale and in radians.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spread {
-    /// The distance from home that is tried first.
+    /// Initial distance from home.
     first: f64,
-    /// What it is multiplied by for a state that no leg's Newton iteration follows.
+    /// Factor of the distance after a state that some leg's Newton iteration does not reach.
     shrink: f64,
 }
 
 impl Spread {
-    /// Around home.
+    /// States near home.
     pub(crate) const NEAR: Self = Self {
         first: 0.4,
         shrink: 0.5,
     };
-    /// As far as legs reach, but for a fifth of the way.
+    /// States up to the legs' reach.
     pub(crate) const FAR: Self = Self {
         first: 1.6,
         shrink: 0.8,
     };
 }
 
-/// `count` random states. The spread around home is halved for a state that no leg's Newton iteration
-/// follows, and once more with legs measured by their own condition at home; a state that stays out of reach is
-/// home itself with random rates.
+/// `count` random states near home.
+///
+/// If some leg's Newton iteration does not reach a state, the distance from home is halved. Then
+/// legs are compared with their own condition at home. A state that stays out of reach becomes home
+/// with random rates.
 #[must_use]
 pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
     spread_states(mechanism, count, seed, Spread::NEAR)
 }
 
-/// `count` random states, spread around home as `by` says.
+/// `count` random states with the distribution `by`.
 pub(crate) fn spread_states(
     mechanism: &Mechanism,
     count: usize,
@@ -93,7 +95,7 @@ fn displaced(
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let home = &mechanism.home;
     if mechanism.is_tree() {
-        // Joints of a tree go anywhere.
+        // Joints of a tree may have any position.
         let joints: Vec<f64> = home
             .joints
             .iter()
@@ -113,8 +115,9 @@ fn displaced(
     Some((pose, joints))
 }
 
-/// A state of a platform with parasitic motion: a pose at a length from home, and the nearest one that the legs
-/// allow, followed in small steps so that the working mode stays.
+/// A state of a platform with parasitic motion at some distance from home.
+///
+/// The pose is projected onto the closures in small steps, so the working mode stays.
 fn displaced_parasitic(
     mechanism: &Mechanism,
     direction: &[f64],
@@ -146,8 +149,10 @@ fn displaced_parasitic(
     Some((at.pose, at.joints))
 }
 
-/// The pose at a length from home in a direction of the pose's coordinates. Lengths scale with the
-/// robot: with the distance of the legs' bases from the platform; quaternions stay units.
+/// The pose at a distance from home, in a direction of the pose's coordinates.
+///
+/// Lengths scale with the distance of the legs' bases from the platform; quaternions stay
+/// normalised.
 #[must_use]
 pub fn pose_towards(
     mechanism: &Mechanism,
@@ -170,7 +175,7 @@ pub fn pose_towards(
     pose
 }
 
-/// The independent joints at a length from home in a direction.
+/// The independent joints at a distance from home in a direction.
 fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<f64> {
     let scale = mechanism.length_scale();
     let joints = mechanism.joints();
@@ -188,7 +193,7 @@ fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<
     moved.collect()
 }
 
-/// Joints at a pose, followed from home in small steps so that the working mode stays.
+/// Joints at a pose, tracked from home in small steps so that the working mode stays.
 fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f64>> {
     const STEPS: usize = 8;
     let home = &mechanism.home;

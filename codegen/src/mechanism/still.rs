@@ -1,18 +1,19 @@
-//! Coordinates that the closures of a platform with parasitic motion keep at zero.
+//! Pose coordinates that the closures of a platform with parasitic motion keep at zero.
 
 use super::Mechanism;
 use super::states::random_states;
 
-/// States at which a coordinate has to be zero to be so everywhere.
+/// Number of states at which a coordinate has to be zero.
 const STATES: usize = 6;
-/// A coordinate that differs from that at home by less, m or of a quaternion, may be at home.
+/// Difference from home, m or of a quaternion, below which a coordinate counts as that of home.
 const BESIDE: f64 = 1e-4;
-/// Largest coordinate, m or of a quaternion, that is zero but for rounding and for what closures miss.
+/// Largest coordinate that counts as zero, m or of a quaternion: rounding and closure errors.
 const ROUNDED: f64 = 1e-9;
 
-/// The coordinates of the pose that the closures of a platform with parasitic motion keep at zero: that of the turn
-/// about z of a 3-RPS, for instance. They are zero at random states that differ from home, which a coordinate
-/// that depends on the pose is nowhere near home but at home itself.
+/// Pose coordinates that the closures keep at zero, such as the rotation about z of a 3-RPS.
+///
+/// They are zero at random states that differ from home. A coordinate that depends on the pose is
+/// not zero near home, except at home itself.
 pub(super) fn still_coordinates(mechanism: &Mechanism) -> Vec<usize> {
     if !mechanism.is_parasitic() {
         return Vec::new();

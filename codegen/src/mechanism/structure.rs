@@ -1,53 +1,54 @@
-//! Legs that are wrong in every configuration: joints that do nothing, joints that do the same, and
-//! joints too many.
+//! Structural defects of legs: joints without effect, joints with equal effect, and too many
+//! joints.
 //!
-//! A leg's joint rates must follow from the motion of its end. They do if the columns of its Jacobian
-//! are independent; columns that are dependent at several random configurations are so everywhere, by
-//! the structure of the leg and not by its home configuration.
+//! The motion of a leg's end must determine its joint rates: the columns of its Jacobian are
+//! independent. Columns that are dependent at several random configurations are dependent
+//! everywhere, because of the leg's structure and not of its home configuration.
 
 use super::singular_values::rank;
 use super::{JointKind, Leg};
 use crate::cas::Stream;
 use nalgebra::DMatrix;
 
-/// What is wrong with a leg in every configuration. Joints are indices of the leg.
+/// A defect of a leg in every configuration. Joints are indices of the leg.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Defect {
     /// Joints on a branch that does not lead to the leg's end.
     Branch(Vec<usize>),
-    /// Joints that never move what the leg's end shares with the platform.
+    /// Joints that never move the components that the leg's end shares with the platform.
     Idle(Vec<usize>),
-    /// Two joints that do the same.
+    /// Two joints with the same effect.
     Twins(usize, usize),
     /// Too few joints to follow the platform.
     Stiff {
-        /// Independent motions that the joints give to the end, among those that it shares with the
-        /// platform.
+        /// Rank of the end velocities that the joints give, in the shared components.
         motions: usize,
-        /// Those that the platform gives to it.
+        /// Rank of the end velocities that the platform gives.
         needed: usize,
     },
     /// More joints than the end has motions.
     Loose {
         /// Independent joints.
         joints: usize,
-        /// Independent motions of the end among those that it shares with the platform.
+        /// Independent motions of the end in the shared components.
         motions: usize,
     },
 }
 
-/// Configurations that are looked at.
+/// Number of random configurations.
 const SAMPLES: usize = 4;
-/// Size of a column, and of its part outside of others, below which it is rounding.
+/// Length of a column, and of its part outside the span of others, below which it is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The defects of a leg, none for one that is regular in almost every configuration. `velocities` are
-/// those of its end per twist coordinate of the platform, in the components that both share.
+/// Defects of a leg; empty if it is regular in almost every configuration.
+///
+/// `velocities` are those of its end per twist coordinate of the platform, in the shared
+/// components.
 #[must_use]
 pub(super) fn defects(leg: &Leg, velocities: &DMatrix<f64>) -> Vec<Defect> {
     let independent: Vec<usize> = leg.independent().collect();
     let samples = samples(leg);
-    // Values out of all scale say nothing about the structure.
+    // Values far out of scale say nothing about the structure.
     if samples.is_empty() || samples.iter().flatten().any(|value| !value.is_finite()) {
         return Vec::new();
     }
@@ -65,7 +66,7 @@ pub(super) fn defects(leg: &Leg, velocities: &DMatrix<f64>) -> Vec<Defect> {
     if !still.is_empty() {
         defects.push(Defect::Idle(still));
     }
-    // Of an end that shares a single motion all joints look alike, whatever their axes are.
+    // If the end shares a single component, all joints look alike, whatever their axes are.
     let tells_axes = samples.iter().all(|j| j.nrows() > 1);
     let mut kept: Vec<usize> = Vec::new();
     for &c in &moving {
@@ -91,7 +92,7 @@ pub(super) fn defects(leg: &Leg, velocities: &DMatrix<f64>) -> Vec<Defect> {
     defects
 }
 
-/// The leg's Jacobian at random configurations, lengths in units of the leg's own.
+/// The leg's Jacobian at random configurations, with lengths in units of the leg's size.
 fn samples(leg: &Leg) -> Vec<DMatrix<f64>> {
     let size = size(leg);
     let mut stream = Stream::new(1);
@@ -122,7 +123,7 @@ fn samples(leg: &Leg) -> Vec<DMatrix<f64>> {
     (0..SAMPLES).map(sample).collect()
 }
 
-/// A length that is typical of the leg, m: all its steps together.
+/// Typical length of the leg, m: the sum of all its link lengths.
 #[must_use]
 pub(super) fn size(leg: &Leg) -> f64 {
     let step = |joint: &super::Joint| {
@@ -133,7 +134,7 @@ pub(super) fn size(leg: &Leg) -> f64 {
     if sum > 0.0 { sum } else { 1.0 }
 }
 
-/// Whether a joint, or one that follows it, is on the way to the leg's end.
+/// Whether a joint, or a joint coupled to it, lies between the base and the leg's end.
 fn leads_to_end(leg: &Leg, joint: usize) -> bool {
     let mut at = leg.joints.len().checked_sub(1);
     while let Some(index) = at {

@@ -1,4 +1,4 @@
-//! One function from mechanism to program: derivation in a graph of its own, then lowering.
+//! From the mechanism to the program of one function: derivation in its own graph, then lowering.
 
 use super::search::Search;
 use crate::cas::Arena;
@@ -7,14 +7,14 @@ use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::Function;
 
-/// What the programs of a robot are made from.
+/// Input of the programs of a robot.
 #[derive(Debug, Clone, Copy)]
 pub struct Assembler<'m> {
     /// The robot.
     pub mechanism: &'m Mechanism,
-    /// The form and the columns of its model.
+    /// Form and columns of the model.
     pub selection: &'m Selection,
-    /// How far cheaper ways to write its functions are searched.
+    /// Extent of the search for cheaper forms of the functions.
     pub search: &'m Search,
 }
 
@@ -33,7 +33,7 @@ impl Assembler<'_> {
     }
 }
 
-/// How the joints follow from the pose: by rule, if one fits every leg.
+/// How the joints follow from the pose: in closed form if a rule fits every leg.
 ///
 /// # Errors
 /// See [`Underivable`].

@@ -1,30 +1,32 @@
-//! Which columns of an identification model are independent, and what the others are made of.
+//! Independent columns of an identification model, and the others as combinations of them.
 //!
 //! The model is evaluated at random states: poses around home, joints that close every leg, random
-//! twists and accelerations. Columns are taken in the symmetric order (43), platform first, then each
-//! parameter of all legs together, and orthogonalised one after the other; a column that leaves
-//! nothing behind is a constant combination of those before it. The coefficients are constants of the
-//! robot's geometry; the proof of a combination makes them exact.
+//! twists and accelerations. Columns are taken in the symmetric order (43): the platform first,
+//! then each parameter of all legs together. They are orthogonalised one after the other. A column
+//! without remainder is a constant combination of earlier ones. The coefficients are constants of
+//! the robot's geometry; the proof of a combination makes them exact.
 
 use crate::cas::Ratio;
 use crate::derivation::BodyParameter;
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 
-/// A base parameter: an independent column and what is regrouped into it.
+/// A base parameter: an independent column and the parameters regrouped into it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct BaseParameter {
     /// The parameter whose column is kept.
     pub parameter: BodyParameter,
-    /// Parameters whose columns are multiples of it in part, with their coefficients.
+    /// Parameters whose columns contain a multiple of this column, with their coefficients.
     pub regrouped: Vec<(BodyParameter, f64)>,
 }
 
 /// Remainder of a column, relative to its length, below which it is dependent.
 const DEPENDENT: f64 = 1e-8;
-/// Length of a column, relative to the longest, below which it is zero: of a joint that the closures hold still, as
-/// the second axis of a universal joint in a plane, rounding is left.
+/// Length of a column, relative to the longest, below which it is zero.
+///
+/// Such a column is rounding of a joint that the closures block, as the second axis of a universal
+/// joint in a plane.
 const NOTHING: f64 = 1e-12;
 /// Coefficients below this are zero.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -62,7 +64,7 @@ pub(super) fn select(
         let original = matrix.column(column).into_owned();
         let size = original.norm();
         let mut rest = original;
-        // Twice is enough: a second pass removes what rounding left of the first.
+        // A second pass removes the rounding errors of the first.
         for _ in 0..2 {
             for known in &basis {
                 let along = known.dot(&rest);
@@ -95,11 +97,13 @@ pub(super) fn select(
     result
 }
 
-/// How often the coefficients are corrected by what they leave.
+/// Number of corrections of the coefficients by the remainder.
 const REFINEMENTS: usize = 2;
 
-/// Coefficients of the dependent columns on the kept ones, by least squares with scaled columns. The columns
-/// depend exactly, so what a solution leaves is its own error, which is solved for once more.
+/// Coefficients of the dependent columns on the kept ones, by least squares with scaled columns.
+///
+/// The dependence is exact, so the remainder of a solution is its own error, which is solved for
+/// again.
 fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> DMatrix<f64> {
     if kept.is_empty() || dependent.is_empty() {
         return DMatrix::zeros(kept.len(), dependent.len());
@@ -126,8 +130,9 @@ fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> D
     solved
 }
 
-/// The simplest fraction within 1e-10 of a number, by its continued fraction: a guess, because nearly
-/// every number has a fraction of six digits as near as that.
+/// The simplest fraction within 1e-10 of a number, by its continued fraction.
+///
+/// It is a guess: nearly every number has a fraction of six digits as close as that.
 #[must_use]
 pub(super) fn nearby_ratio(value: f64) -> Option<Ratio> {
     let (mut h0, mut h1, mut k0, mut k1) = (0_i128, 1_i128, 1_i128, 0_i128);

@@ -1,4 +1,4 @@
-//! Which columns of a robot's identification model are independent, and what the others are made of.
+//! Choice of the base parameters: independent columns, and proved combinations for the others.
 
 use super::assemble::Assembler;
 use super::base::{BaseParameter, select, symmetric_order};
@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use overact_core::{Columns, Function};
 use std::collections::BTreeSet;
 
-/// Independent columns over random states, and what the others are made of, with the combinations that
+/// Independent columns over random states, the regrouping of the others, and the combinations that
 /// are proved to be exact.
 ///
 /// # Errors
@@ -43,7 +43,7 @@ pub(super) fn base_parameters(
     Ok((base, exact))
 }
 
-/// Operations of the model with these columns, after a short search: choices differ by little.
+/// Operations of the model with these columns after a short search: choices differ little.
 fn operations(
     mechanism: &Mechanism,
     selection: &Selection,
@@ -62,9 +62,10 @@ fn operations(
     Ok(program.cost().operations())
 }
 
-/// What each column costs: the operations of a program, divided among the columns that need them. If
-/// no operation were shared, the independent columns that come first in this order would be the
-/// cheapest set (the greedy algorithm on a matroid); as they are, it is a good guess.
+/// Cost of each column: the operations of a program, divided among the columns that need them.
+///
+/// If no operation were shared, the independent columns that come first in this order would be the
+/// cheapest set (the greedy algorithm on a matroid). With shared operations it is a good guess.
 fn shares(program: &Program, columns: usize) -> Vec<f64> {
     let mut needed: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); program.steps.len()];
     for (at, entry) in program.entries.iter().enumerate() {
@@ -119,8 +120,8 @@ pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) 
             .zip(number.values)
             .for_each(|(place, value)| *place = number.sign * value);
     });
-    // Regular states by construction: where a guard fails all the same, the rest from its block on is zero
-    // and counts for nothing.
+    // States are regular by construction. If a guard fails nevertheless, the rest from its block on
+    // is zero and has no effect.
     if let Err(failed) = done {
         let valid = failed.sample / BLOCK * BLOCK * rows;
         sampled.rows_range_mut(valid..).fill(0.0);

@@ -1,9 +1,9 @@
 //! Dependent columns that are cheaper as combinations of others.
 //!
-//! A regrouping says not only which parameters cannot be told apart, but also that a column is a
-//! constant combination of other columns. For a planar leg, the first moment of the distal link is a
-//! point mass on the platform less two moments of inertia, all of which are there already. Columns that
-//! differ by the leg only are tried together, and what lowers the operation count is kept.
+//! A regrouping shows which parameters are indistinguishable, and that a column is a constant
+//! combination of others. For a planar leg, the first moment of the distal link is a point mass on
+//! the platform minus two moments of inertia, whose columns exist already. Columns that differ by
+//! the leg only are tried together, and those that lower the operation count are kept.
 
 use super::assemble::Assembler;
 use super::base::{BaseParameter, nearby_ratio};
@@ -13,8 +13,7 @@ use crate::cas::Number;
 use crate::derivation::{BodyParameter, Combination, MotionInput, Selection, Underivable};
 use crate::mechanism::Mechanism;
 
-/// The combinations that make the standard regressor from joint angles cheaper than the one that is had
-/// without them.
+/// The combinations that make the standard regressor from joint angles cheaper than without them.
 ///
 /// # Errors
 /// See [`Underivable`].
@@ -50,9 +49,10 @@ pub(super) fn cheaper_columns(
     Ok(chosen)
 }
 
-/// Guesses the fractions behind the coefficients of the regroupings and proves them: the combination
-/// must be the dependent column itself, as an expression. Coefficients that are proved become exact in
-/// `base`; the others stay as they were computed.
+/// Guesses the fractions of the regroupings' coefficients and proves them.
+///
+/// The combination has to equal the dependent column as an expression. Proved coefficients become
+/// exact in `base`; the others keep their computed values.
 pub(super) fn exact_combinations(
     regressor: &Regressor,
     base: &mut [BaseParameter],
@@ -75,7 +75,7 @@ pub(super) fn exact_combinations(
     guesses
 }
 
-/// Dependent columns all of whose coefficients are near fractions.
+/// Dependent columns all of whose coefficients are close to fractions.
 fn guesses(base: &[BaseParameter]) -> Vec<Combination> {
     let mut all: Vec<Combination> = Vec::new();
     let mut inexact: Vec<BodyParameter> = Vec::new();
@@ -112,8 +112,8 @@ fn groups(mechanism: &Mechanism, candidates: &[Combination]) -> Vec<Vec<Combinat
     let mut merged: Vec<Vec<Combination>> = Vec::new();
     for group in groups {
         let group = group.iter().map(|c| (*c).clone());
-        // Columns that are the same combination stand or fall together: left out of one of them, its
-        // own expression would serve for all.
+        // Columns that are the same combination are kept or left out together: the expression of
+        // one of them would serve for all.
         let first = group.clone().next();
         let same = |other: &Vec<Combination>| {
             let pair = first.as_ref().zip(other.first());

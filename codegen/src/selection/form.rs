@@ -1,4 +1,4 @@
-//! One way to write a function, and what was counted of the ways that were looked at.
+//! A form of a function, and the operation counts of the forms examined so far.
 
 use super::assemble::Assembler;
 use super::search::Search;
@@ -7,22 +7,25 @@ use crate::lowering::Program;
 use overact_core::Function;
 use std::cell::RefCell;
 
-/// A way to write a function.
+/// A form of a function.
 #[derive(Debug, Clone)]
 pub(super) struct Form {
     pub(super) selection: Selection,
-    /// Before a search.
+    /// Operation count before a search.
     pub(super) operations: usize,
-    /// Whether it is searched however many operations it has: the cheapest one in the formulation that was chosen
-    /// for the robot, and one that a short search makes the cheapest.
+    /// Whether it is searched regardless of its operation count.
+    ///
+    /// It holds for the cheapest form in the robot's formulation, and for one that a short search
+    /// makes the cheapest.
     pub(super) is_worth: bool,
-    /// Whether the axes of all legs are the first ones in it.
+    /// Whether all legs have the first axes.
     pub(super) is_plain: bool,
-    /// Whether a short search looks at it however many operations it has: the axes of some legs are the first ones.
+    /// Whether a short search is tried regardless of the operation count: some legs have the first
+    /// axes.
     pub(super) is_tried: bool,
 }
 
-/// Forms of which each is searched once, though several ways may have led to it.
+/// Removes duplicate forms, so that each is searched once.
 pub(super) fn distinct(forms: Vec<Form>) -> Vec<Form> {
     let mut own: Vec<Form> = Vec::new();
     for form in forms {
@@ -36,14 +39,14 @@ pub(super) fn distinct(forms: Vec<Form>) -> Vec<Form> {
     own
 }
 
-/// Whether a function is written alike with both, with columns of the same robot.
+/// Whether both selections give a function the same form, for columns of the same robot.
 fn is_written_as(one: &Selection, other: &Selection) -> bool {
     one.formulation == other.formulation
         && one.dynamics == other.dynamics
         && one.combined.is_empty() == other.combined.is_empty()
 }
 
-/// The operations of one function in its forms. Several ways lead to a form, and each is derived and counted once.
+/// Operation counts of one function in its forms; each form is derived and counted once.
 pub(super) struct Counts<'m> {
     assembler: Assembler<'m>,
     function: Function,
@@ -52,11 +55,11 @@ pub(super) struct Counts<'m> {
     after: Known,
 }
 
-/// What is known of forms.
+/// Cached counts by form.
 type Known = RefCell<Vec<(Selection, Result<usize, Underivable>)>>;
 
 impl<'m> Counts<'m> {
-    /// Of a function, nothing of which is known yet.
+    /// Counts of a function, initially empty.
     pub(super) fn new(assembler: Assembler<'m>, function: Function, from: MotionInput) -> Self {
         Self {
             assembler,
@@ -67,21 +70,21 @@ impl<'m> Counts<'m> {
         }
     }
 
-    /// The operations of the function as it is derived.
+    /// Operations of the function as derived.
     pub(super) fn before(&self, selection: &Selection) -> Result<usize, Underivable> {
         known(&self.before, selection, || {
             self.searched(selection, &Search::none())
         })
     }
 
-    /// Those after a short search.
+    /// Operations after a short search.
     pub(super) fn after(&self, selection: &Selection) -> Result<usize, Underivable> {
         known(&self.after, selection, || {
             self.searched(selection, &Search::short())
         })
     }
 
-    /// The function after the search that was asked for.
+    /// The function after the requested search.
     pub(super) fn program(&self, selection: &Selection) -> Result<Program, Underivable> {
         let own = Assembler {
             selection,
@@ -90,7 +93,7 @@ impl<'m> Counts<'m> {
         own.program(self.function, self.from)
     }
 
-    /// The operations after a search.
+    /// Operations after a search.
     fn searched(&self, selection: &Selection, search: &Search) -> Result<usize, Underivable> {
         let own = Assembler {
             selection,
@@ -101,7 +104,7 @@ impl<'m> Counts<'m> {
     }
 }
 
-/// What is known of a form, told where it is not.
+/// The cached count of a form, computed on the first request.
 fn known(
     all: &Known,
     selection: &Selection,

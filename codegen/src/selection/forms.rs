@@ -1,4 +1,4 @@
-//! The forms in which one function may be written, and the cheapest of them.
+//! The forms of one function, and the cheapest of them.
 
 use super::assemble::Assembler;
 use super::form::{Counts, Form, distinct};
@@ -12,15 +12,15 @@ use overact_core::{Columns, Function};
 /// The forms of one function.
 pub(crate) struct Forms<'m> {
     mechanism: &'m Mechanism,
-    /// The form that was chosen for the robot.
+    /// The form chosen for the robot.
     selection: &'m Selection,
     function: Function,
-    /// Whether fewer operations are worth the time to try other forms than that.
+    /// Whether the search tries other forms to save operations.
     is_thorough: bool,
     counts: Counts<'m>,
 }
 
-/// A form that the last changes have improved.
+/// A form improved by the last changes.
 struct Refinement {
     form: Form,
     /// Operations of the original form after a short search.
@@ -30,7 +30,7 @@ struct Refinement {
 }
 
 impl<'m> Forms<'m> {
-    /// Of a function.
+    /// Forms of a function.
     pub(crate) fn new(assembler: Assembler<'m>, function: Function, from: MotionInput) -> Self {
         Self {
             mechanism: assembler.mechanism,
@@ -43,9 +43,10 @@ impl<'m> Forms<'m> {
 }
 
 impl Forms<'_> {
-    /// The function in that of its equal forms that needs the fewest operations: with or without combined
-    /// columns, with forces by parameters or by bodies, and in the axes that suit it. All are counted as they
-    /// are derived; searched are those that a search could still make the better one.
+    /// The function in the equivalent form that needs the fewest operations.
+    ///
+    /// Forms differ by combined columns, by forces summed by parameters or by bodies, and by axes.
+    /// All are counted as derived. Those that a search could still make the cheapest are searched.
     ///
     /// # Errors
     /// See [`Underivable`].
@@ -85,8 +86,9 @@ impl Forms<'_> {
         }
     }
 
-    /// What the closing change makes the cheapest of some forms, where it pays for that one before a search and after
-    /// a short one.
+    /// Applies the closing change to the form that it makes the cheapest.
+    ///
+    /// The change has to save operations before a search and after a short one.
     fn closing(&self, forms: &[Form]) -> Result<Option<Program>, Underivable> {
         let change = formulation::closing_choice(self.mechanism, self.function);
         let Some(change) = change.filter(|_| self.is_thorough) else {
@@ -111,8 +113,10 @@ impl Forms<'_> {
         found.map(program).transpose()
     }
 
-    /// The forms of a function with their operations before a search: those of the robot's formulation, and of
-    /// the best of them in the formulation that is the cheapest for this function, where the search is thorough.
+    /// The forms of a function with their operations before a search.
+    ///
+    /// They are those of the robot's formulation and, if the search is thorough, the best of them
+    /// in the formulation that is cheapest for this function.
     fn forms(&self) -> Result<Vec<Form>, Underivable> {
         let mut forms = vec![self.form(self.selection.clone())?];
         if let Some(other) = self.other_form() {
@@ -148,8 +152,10 @@ impl Forms<'_> {
         })
     }
 
-    /// The best form that changes of a formulation lead to, one after the other, each if it is better; also all that
-    /// were looked at.
+    /// The best form after changes of a formulation, applied one after the other if they improve
+    /// it.
+    ///
+    /// Also returns all forms that were examined.
     fn changed(&self, start: &Form, changes: &[Change]) -> Result<(Form, Vec<Form>), Underivable> {
         let mut best = start.clone();
         let mut trials = vec![best.clone()];
@@ -162,7 +168,7 @@ impl Forms<'_> {
                 dynamics: selection.dynamics.other(),
                 ..selection.clone()
             });
-            // A form in which a leg cannot be written is none to choose.
+            // Forms in which a leg cannot be written are skipped.
             let Ok(mut trial) = self.form(selection) else {
                 continue;
             };
@@ -180,9 +186,10 @@ impl Forms<'_> {
         Ok((best, trials))
     }
 
-    /// The best form that changes lead to from the first axes of all legs, where legs differ in shape and a short
-    /// search makes it cheaper than the best one: what suits one shape may be no better with what the robot's
-    /// formulation has for the others.
+    /// The best form that results from changes to the first axes of all legs.
+    ///
+    /// It is used if legs differ in shape and a short search makes it cheaper than the best form.
+    /// Axes that suit one shape may not suit the axes of the others in the robot's formulation.
     fn starting_from_first_axes(
         &self,
         start: &Form,
@@ -205,7 +212,7 @@ impl Forms<'_> {
         Ok((after(&other)? < after(best)?).then_some(other))
     }
 
-    /// Applies to a form those of the last changes that save operations after a short search. `None` if none does.
+    /// Applies the last changes that save operations after a short search. `None` if none does.
     fn refined(&self, form: &Form) -> Result<Option<Refinement>, Underivable> {
         let changes = formulation::last_choices(self.mechanism, self.function);
         if changes.is_empty() || !self.is_thorough {
@@ -234,8 +241,10 @@ impl Forms<'_> {
         Ok((least < first).then_some(refinement))
     }
 
-    /// The best form in other axes of a refined form, if it needs fewer operations after a short search: the refinement
-    /// may have changed which axes suit best.
+    /// The best form in other axes of a refined form, if it needs fewer operations after a short
+    /// search.
+    ///
+    /// The refinement may change which axes are best.
     fn in_other_axes(&self, refinement: &Refinement) -> Result<Option<Form>, Underivable> {
         if self.function.columns().is_none() {
             return Ok(None);
@@ -255,8 +264,10 @@ impl Forms<'_> {
         Ok(found.map(|(_, form)| form))
     }
 
-    /// Of the forms that a search could make cheaper than the one with the fewest operations before it that which a
-    /// short search makes the cheapest, and the plain ones if they come near.
+    /// The form that a short search makes the cheapest, and plain forms that come close.
+    ///
+    /// Only forms are considered that a search could make cheaper than the one with the fewest
+    /// operations.
     fn promising(&self, trials: Vec<Form>, best: &Form) -> Result<Vec<Form>, Underivable> {
         let (plain, others): (Vec<Form>, Vec<Form>) =
             trials.into_iter().partition(|form| form.is_tried);
@@ -309,23 +320,26 @@ impl Forms<'_> {
     }
 }
 
-/// Operations of a program, each division as four: processors take that long from one to the next, and sums over
-/// divisors may be more divisions.
+/// Weighted operation count of a program: a division counts as four.
+///
+/// Divisions have about that latency, and sums over divisors may contain more of them.
 fn weighed(program: &Program) -> usize {
     let cost = program.cost();
     cost.operations() + 3 * cost.divisions
 }
 
-/// Operations after a short search of a plain form that is worth a longer one, in hundredths of the fewest.
+/// Largest count after a short search at which a plain form gets a longer one, in percent of the
+/// smallest.
 const NEAR: usize = 106;
 
-/// Operations after a short search of what changes have made of a form, in hundredths of the form's own, that leave no
-/// hope for the form.
+/// Count of a changed form after a short search below which the original form is dropped, in
+/// percent of the original's count.
 const CLEARLY: usize = 97;
 
-/// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
-/// replacements take about as much from each form of the dynamics; with and without combined columns they,
-/// and the pairs, take less alike.
+/// Largest count at which a form is searched, in percent of the cheapest.
+///
+/// Single replacements save about as much in each form of the dynamics. With and without combined
+/// columns, they and the pairs save different amounts.
 const fn worth_a_search(function: Function) -> usize {
     match function.columns() {
         Some(Columns::Standard) => 120,

@@ -1,5 +1,5 @@
-//! Which of several equal forms of a robot's model takes the fewest operations: derived, lowered without
-//! a search, and counted.
+//! Choice of the formulation with the fewest operations: each is derived, lowered without search,
+//! and counted.
 
 use super::regressor::Regressor;
 use crate::derivation::{
@@ -11,15 +11,16 @@ use crate::parallel;
 use overact_core::Function;
 use std::collections::BTreeSet;
 
-/// Operations of a form that a search could make the cheapest one, in hundredths of those of the cheapest before it.
+/// Largest count at which a search could make a form the cheapest, in percent of the smallest.
 const PROMISING: usize = 106;
 
-/// Of so many such forms a short search tells which is the cheapest.
+/// Number of such forms that a short search compares.
 const TRIED: usize = 4;
 
-/// The cheapest formulation of the standard regressor from joint angles, with the regressor: for each shape
-/// of legs the axes of its closure, then whether axes that meet share a moment; the plain form where nothing
-/// is better.
+/// The cheapest formulation of the standard regressor from joint angles, with the regressor.
+///
+/// For each shape of legs it chooses the axes of the closure, then whether axes that meet share a
+/// moment. The plain form is kept if nothing is better.
 ///
 /// # Errors
 /// See [`Underivable`].
@@ -57,7 +58,7 @@ pub(super) fn cheapest_formulation(
     Ok((best.formulation, best.regressor))
 }
 
-/// Those of some trials that a search could make the cheapest, the cheapest first: of each number of operations one.
+/// Trials that a search could make the cheapest, in ascending order: one of each operation count.
 pub(super) fn promising<T>(
     mut trials: Vec<T>,
     least: usize,
@@ -79,7 +80,7 @@ struct Best<'m> {
 }
 
 impl Best<'_> {
-    /// Takes the best of the changes if one is better.
+    /// Adopts the best of the changes if it is an improvement.
     fn choose(&mut self, changes: &[Change]) {
         let trials = changes
             .iter()
@@ -88,7 +89,7 @@ impl Best<'_> {
         let of = |trial: &Formulation| regressor(self.mechanism, self.selection, trial);
         let regressors = parallel::map(&trials, of);
         for (formulation, regressor) in trials.into_iter().zip(regressors) {
-            // A form in which a leg cannot be written is none to choose.
+            // Forms in which a leg cannot be written are skipped.
             let Ok(regressor) = regressor else { continue };
             if regressor.operations() < self.regressor.operations() {
                 (self.formulation, self.regressor) = (formulation, regressor);
@@ -106,16 +107,16 @@ pub(super) enum Change {
     ClosureFrame {
         /// The legs.
         legs: Vec<usize>,
-        /// The number of the axes.
+        /// Index of the axes.
         closure_frame: usize,
     },
-    /// The axes in which the closures of some chains see the bodies at their ends, with those in which they are written.
+    /// The observer's axes of some chains' closures, and the axes in which these are written.
     ObserverFrame {
         /// The chains.
         legs: Vec<usize>,
-        /// The number of the observer's axes.
+        /// Index of the observer's axes.
         observer_frame: usize,
-        /// The number of the axes in which the closures are written.
+        /// Index of the axes in which the closures are written.
         closure_frame: usize,
     },
     /// See [`Formulation::meeting`].
@@ -139,12 +140,12 @@ pub(super) enum Change {
 }
 
 impl Change {
-    /// Whether it takes the first axes for all legs.
+    /// Whether the change sets the first axes for all legs.
     pub(super) const fn is_plain(&self) -> bool {
         matches!(self, Self::Plain)
     }
 
-    /// Whether it takes the first axes for some legs.
+    /// Whether the change sets the first axes for some legs.
     pub(super) const fn takes_first(&self) -> bool {
         matches!(
             self,
@@ -156,7 +157,7 @@ impl Change {
         )
     }
 
-    /// A selection with the change; `None` where it is written so already.
+    /// A selection with the change; `None` if it has no effect.
     pub(super) fn on(&self, selection: &Selection) -> Option<Selection> {
         Some(Selection {
             formulation: self.of(&selection.formulation)?,
@@ -164,7 +165,7 @@ impl Change {
         })
     }
 
-    /// The formulation with the change; `None` where it is written so already.
+    /// The formulation with the change; `None` if it has no effect.
     pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
         let mut changed = formulation.clone();
         match self {
@@ -207,9 +208,11 @@ impl Change {
     }
 }
 
-/// Groups of changes, of each of which one is chosen, in this order: for each shape of legs the axes of its closure, then
-/// whether axes that meet share a moment. If `for_function`, legs whose closure uses some components only have these
-/// choices, too: axes that suit the identification model do not suit other functions of such legs.
+/// Groups of alternative changes, in the order of choice.
+///
+/// For each shape of legs there are the axes of its closure; then whether axes that meet share a
+/// moment. If `for_function`, legs whose closure uses only some components have these choices, too.
+/// Axes that suit the identification model do not suit other functions of such legs.
 fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
     let mut shapes = BTreeSet::new();
     if !mechanism.is_tree() {
@@ -219,7 +222,7 @@ fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        // A number counts if it means different axes in one of the legs.
+        // An index counts if it means different axes in one of the legs.
         let of_all = |choices: fn(&Mechanism, usize) -> Vec<usize>| {
             let all = legs.iter().flat_map(|&leg| choices(mechanism, leg));
             let are_tried =
@@ -262,9 +265,11 @@ fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
     choices
 }
 
-/// The changes that are tried for one function, one after the other. Constraints of a platform with parasitic motion are
-/// written in the axes of the legs, and guards of unreachable poses belong to the legs whose joints are needed: there
-/// only functions of all joints choose the axes of the legs.
+/// The changes that are tried for one function, one after the other.
+///
+/// Constraints of a platform with parasitic motion are in the axes of the legs, and guards of
+/// unreachable poses belong to the legs whose joints are needed. For such platforms, only functions
+/// of all joints choose the axes of the legs.
 pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
     let has_forces = has_forces(function);
     let may_change_axes = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
@@ -288,13 +293,13 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
     all
 }
 
-/// Whether legs of more than one shape are closed, so that their axes are chosen one after the other.
+/// Whether legs of several shapes are closed, so that their axes are chosen one after the other.
 pub(super) fn has_several_shapes(mechanism: &Mechanism) -> bool {
     let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
     closed.map(|leg| leg.shape).collect::<BTreeSet<_>>().len() > 1
 }
 
-/// The changes that are tried last, on what the others have made: whether they pay is seen after a search alone.
+/// The changes that are tried last; only a search shows whether they save operations.
 pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Change> {
     let mut all = Vec::new();
     if mechanism.is_parasitic() {
@@ -310,13 +315,13 @@ pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Cha
     all
 }
 
-/// The change that is tried on what all others have made: sums over divisors, which closures of legs divide by.
+/// The change that is tried after all others: sums over divisors in the legs' closures.
 pub(super) fn closing_choice(mechanism: &Mechanism, function: Function) -> Option<Change> {
     let divides = !mechanism.is_tree() && has_motion(function);
     divides.then_some(Change::OverDivisors(true))
 }
 
-/// Whether a function is of velocities or accelerations.
+/// Whether a function depends on velocities or accelerations.
 const fn has_motion(function: Function) -> bool {
     has_forces(function)
         || function.columns().is_some()
@@ -328,7 +333,7 @@ const fn has_motion(function: Function) -> bool {
         )
 }
 
-/// The formulations of a function that one change makes of that of a robot, and those that all changes so far make
+/// The formulations that single changes make of a robot's, and those that all changes so far make
 /// together.
 #[must_use]
 pub fn formulations(
@@ -359,7 +364,7 @@ const fn moves_all_legs(function: Function) -> bool {
     )
 }
 
-/// Whether a function adds up forces of given parameters.
+/// Whether a function sums forces of given parameters.
 pub(super) const fn has_forces(function: Function) -> bool {
     matches!(
         function,

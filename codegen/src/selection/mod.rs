@@ -1,14 +1,15 @@
-//! What is chosen for a robot before its functions are written: the form of its model and its columns.
+//! Choice of the form and the columns of a robot's model, before its functions are written.
 //!
-//! The standard regressor of case 1, eq. (30), has a column per standard parameter; those that are
-//! identically zero are left out. It is derived once for each form of the closures, eq. (9), and of the
-//! moments about axes that meet ([`formulation`]). Of the form that takes the fewest operations, the
-//! independent columns are found over random states in the symmetric order (43) ([`columns`], [`base`]).
-//! Every other column is a constant combination of them, and is written as one where that takes fewer
-//! operations ([`combine`]). All choices go by one measure: the operations of the program that
-//! [`assemble`] makes of a function in the cheapest of its [`forms`], searched as far as [`search`] says.
-//! Where the parameters are known, [`values`] says which numbers stand for them. Legs that are alike may run
-//! side by side, as [`lanes`] says.
+//! The standard regressor of the platform projection, eq. (30), has one column per standard
+//! parameter without those that are identically zero. It is derived once for each form of the
+//! closures, eq. (9), and of the moments about axes that meet ([`formulation`]). For the form with
+//! the fewest operations, the independent columns are found over random states in the symmetric
+//! order (43) ([`columns`], [`base`]). Every other column is a constant combination of them, and is
+//! written so if that takes fewer operations ([`combine`]).
+//!
+//! All choices have one criterion: the operations of the program that [`assemble`] makes of a
+//! function in the cheapest of its [`forms`], with the search extent of [`search`]. If parameters
+//! are known, [`values`] gives their numbers. Equal legs may run in SIMD lanes ([`lanes`]).
 
 mod assemble;
 mod base;

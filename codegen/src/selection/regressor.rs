@@ -1,5 +1,5 @@
-//! The standard regressor of case 1 from joint angles, derived once for each formulation: whatever is
-//! chosen about columns is read from it.
+//! The standard regressor of the platform projection from joint angles, derived once for each
+//! formulation. All choices of columns are based on it.
 
 use super::search::Search;
 use crate::cas::arena::Handle;
@@ -9,23 +9,24 @@ use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Function};
 
-/// The function that is looked at: its operations are most of an identification's work.
+/// The function that is compared: its operations are most of an identification's work.
 pub(super) const FAMILY: Function = Function::IdmRedPlatform(Columns::Standard);
 
 /// The regressor of one formulation.
 #[derive(Debug)]
 pub(super) struct Regressor {
     arena: Arena,
-    /// The parameters of its columns.
+    /// Parameters of the columns.
     parameters: Vec<BodyParameter>,
-    /// Column by column.
+    /// Entries, column by column.
     columns: Vec<Vec<Handle>>,
-    /// The program that the derivation's own form gives.
+    /// Program of the form as derived.
     pub(super) program: Program,
 }
 
 impl Regressor {
-    /// Derives the regressor with the columns that are not identically zero among those of the selection.
+    /// Derives the regressor; columns that are identically zero are removed from those of the
+    /// selection.
     ///
     /// # Errors
     /// See [`Underivable`].
@@ -67,7 +68,7 @@ impl Regressor {
         Some(entries.map(|&handle| self.arena.expr(handle)).collect())
     }
 
-    /// The sum of columns with factors, row by row.
+    /// A linear combination of columns, row by row.
     pub(super) fn combination(&self, terms: &[(BodyParameter, Number)]) -> Option<Vec<Expr<'_>>> {
         let rows = self.columns.first().map_or(0, Vec::len);
         let mut sum = vec![self.arena.zero(); rows];

@@ -1,5 +1,5 @@
-//! How far the operations of a robot's functions are searched, and the states at which the search compares
-//! the digits of their forms.
+//! Extent of the search for fewer operations, and the states at which it compares rounding errors
+//! of forms.
 
 use crate::cas::{Arena, InputElement};
 use crate::derivation::{Derived, Guard, GuardKind, rounded_magnitude};
@@ -13,26 +13,27 @@ use overact_core::Function;
 use overact_description::Effort;
 use overact_description::diagnostic::InternalError;
 
-/// States of each kind by which the search compares the digits of forms.
+/// States of each kind at which rounding errors are compared.
 const STATES: usize = 16;
 
-/// How far the functions of a robot are searched.
+/// Extent of the search for the functions of a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Search {
-    /// How far cheaper ways to write the functions that matter most are searched.
+    /// Search limits of the most important functions.
     limits: SearchLimits,
-    /// Groups of states at which the digits of forms are compared.
+    /// Groups of states at which rounding errors of forms are compared.
     states: Vec<Vec<State>>,
 }
 
 impl Search {
-    /// None: programs are as the derivation writes them.
+    /// No search: programs are as derived.
     #[must_use]
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// A short search that compares no digits: it tells which of two programs will be the cheaper one.
+    /// A short search without comparison of rounding errors, to predict which of two programs will
+    /// be cheaper.
     #[must_use]
     pub const fn short() -> Self {
         Self {
@@ -41,7 +42,7 @@ impl Search {
         }
     }
 
-    /// The search that an effort asks for.
+    /// The search of a given effort.
     #[must_use]
     pub fn with(effort: Effort, mechanism: &Mechanism) -> Self {
         let limits = SearchLimits::of(effort);
@@ -57,7 +58,7 @@ impl Search {
         }
     }
 
-    /// Whether fewer operations are worth the time to try other forms of every function.
+    /// Whether other forms of every function are tried to save operations.
     #[must_use]
     pub(super) const fn is_thorough(&self) -> bool {
         self.limits.is_thorough()
@@ -74,7 +75,7 @@ impl Search {
         self.lower_with(arena, mechanism, function, derived, &|_| None)
     }
 
-    /// The program of a derived function in which inputs replace constants, of these values.
+    /// The program of a derived function in which inputs replace constants of these values.
     pub(super) fn lower_with<'a>(
         &self,
         arena: &'a Arena,
@@ -84,7 +85,7 @@ impl Search {
         standing: &dyn Fn(InputElement) -> Option<f64>,
     ) -> Result<Program, InternalError> {
         let limits = self.limits_of(function);
-        // Of a controller's functions the one that runs in every cycle of it.
+        // Among a controller's functions, the one that runs in every cycle.
         let again = match function {
             Function::InverseDynamics(_) => self.limits.of_control_again(),
             _ => None,
@@ -121,9 +122,11 @@ impl Search {
         })
     }
 
-    /// How far the search of a function goes: the identification models, which run at every sample of
-    /// every log, are searched as far as asked, those that run in a controller a step less far; of the others
-    /// only the nodes one by one.
+    /// Search limits of a function.
+    ///
+    /// Identification models, which run at every sample of every log, are searched as far as
+    /// requested. Functions of a controller are searched a step less. In all others only single
+    /// nodes are replaced.
     const fn limits_of(&self, function: Function) -> SearchLimits {
         match function {
             Function::IdmRedPlatform(_) => self.limits,
@@ -144,7 +147,7 @@ const fn is_of_control(function: Function) -> bool {
     )
 }
 
-/// Whether a program takes fewer operations than another one and no more sines and roots.
+/// Whether a program takes fewer operations than another, and no more sines and roots.
 pub(super) fn is_cheaper(program: &Program, other: &Program) -> bool {
     let (of_program, of_other) = (program.cost(), other.cost());
     of_program.operations() < of_other.operations()

@@ -1,13 +1,14 @@
-//! Values of a robot's parameters, where they are known.
+//! Known values of a robot's parameters.
 
 use super::base::BaseParameter;
 use crate::derivation::{BodyParameter, Selection};
 use crate::mechanism::Mechanism;
 use std::collections::BTreeMap;
 
-/// The values with which functions are written: those of the base parameters, with what is regrouped into
-/// them, and of the payload; all others are zero, for torques tell only of the regrouped ones. What is not
-/// given is zero.
+/// Parameter values for the functions: base parameters with all that is regrouped into them, and
+/// the payload.
+///
+/// All others are zero, since torques determine regrouped parameters only. Missing values are zero.
 pub(crate) fn regrouped(
     mechanism: &Mechanism,
     selection: &Selection,

@@ -1,5 +1,5 @@
-//! The angles that a function knows from its inputs alone: their sines and cosines are evaluated
-//! together, so that they fill vector registers.
+//! Angles that depend on inputs alone: their sines and cosines are evaluated together, to fill
+//! vector registers.
 
 use crate::lowering::{Operand, Operation, Program};
 
@@ -14,12 +14,12 @@ pub struct Pair {
     pub cosine: Option<usize>,
 }
 
-/// Angles whose sines and cosines can be evaluated first, and the steps that compute them.
+/// Angles whose sines and cosines can be evaluated first, and the steps that compute the angles.
 #[derive(Debug, Default)]
 pub struct Early {
-    /// Steps that angles are computed by, in the program's order.
+    /// Steps of the angles, in the program's order.
     pub steps: Vec<usize>,
-    /// The angles, in the order of their first use; none if there are fewer than two.
+    /// The angles, in the order of first use; empty if there are fewer than two.
     pub pairs: Vec<Pair>,
 }
 

@@ -1,8 +1,8 @@
-//! The body of a function: assignments and results as a reader shall see them, in no language yet.
+//! The body of a function as assignments and results, independent of a language.
 //!
-//! A value that is used once and has no name is written where it is used, as long as the expression
-//! stays short; every other value is an assignment with one of the [`names`](super::names). What a language
-//! calls otherwise, and how it writes a sum, is its own affair.
+//! A value without a name that is used once is written inline, as long as the expression stays
+//! short. All other values are assignments with one of the [`names`](super::names). Each language
+//! has its own rules for reserved names and for the format of expressions.
 
 use super::angles;
 use super::labels::Labels;
@@ -12,7 +12,7 @@ use super::statement::{Call, Expression, Operator, Pair, Statement};
 use crate::lowering::{Entry, Operand, Operation, Program, schedule_min_live};
 use std::collections::{BTreeMap, HashSet};
 
-/// Operations that one expression may hold.
+/// Largest number of operations in one expression.
 const LONGEST: usize = 10;
 
 /// A named constant of a body.
@@ -22,35 +22,36 @@ pub struct Constant {
     pub name: String,
     /// The value.
     pub value: f64,
-    /// What it is, in the description's names.
+    /// Its expression in the description's names.
     pub expression: String,
 }
 
 /// A function's body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Constants that it uses, by name.
+    /// Constants in the body, sorted by name.
     pub constants: Vec<Constant>,
     /// The assignments and conditions.
     pub statements: Vec<Statement>,
-    /// The output, row-major; empty where statements write it.
+    /// The output, row-major; empty if statements write it.
     pub output: Vec<Expression>,
-    /// Where a section begins: the first name of its first assignment, and the section's.
+    /// Starts of sections: the first name of the first assignment, and the section's heading.
     pub sections: Vec<(String, String)>,
-    /// All names that are assigned, in the order of the program's steps.
+    /// All assigned names, in the order of the program's steps.
     pub names: Vec<String>,
 }
 
 impl Body {
-    /// Statements and values of a program whose inputs and outputs have these labels; names that are
-    /// `reserved` are not given.
+    /// Statements and values of a program, with labels of its inputs and outputs.
+    ///
+    /// Names that are `reserved` are not used.
     #[must_use]
     pub fn write(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
         Self::write_with(program, labels, reserved, &|_| false)
     }
 
-    /// The same with a statement for each number of the output, where it is known, in an order in which few values
-    /// wait for their last use.
+    /// The same with a statement that writes each number of the output as soon as it is known, in
+    /// an order with few live values.
     #[must_use]
     pub fn placed(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
         let program = schedule_min_live(program);
@@ -61,7 +62,7 @@ impl Body {
         writer.body(Vec::new())
     }
 
-    /// The same with a name for each step that is `kept`, however short.
+    /// The same, with a name for each step that is `kept`, however short.
     #[must_use]
     pub fn write_with(
         program: &Program,
@@ -76,14 +77,14 @@ impl Body {
     }
 }
 
-/// An expression and how many operations it holds.
+/// An expression and its number of operations.
 #[derive(Debug, Clone)]
 struct Sized {
     expression: Expression,
     size: usize,
 }
 
-/// Writes the body of a program.
+/// State of writing a program's body.
 struct Writer<'p> {
     program: &'p Program,
     naming: Names<'p>,
@@ -97,16 +98,16 @@ struct Writer<'p> {
     inlined: Vec<Option<Sized>>,
     statements: Vec<Statement>,
     taken: HashSet<String>,
-    /// Steps that are written before their turn.
+    /// Steps that are already written.
     written: Vec<bool>,
-    /// How many guards are written.
+    /// Number of guards written.
     guarded: usize,
-    /// Where the steps' values stand in the output, if statements write it.
+    /// Places of the steps' values in the output, if statements write it.
     places: Option<Places>,
 }
 
 impl<'p> Writer<'p> {
-    /// Of a program of which nothing is written.
+    /// A writer for a program, with nothing written yet.
     fn new(
         program: &'p Program,
         labels: &'p Labels,
@@ -144,7 +145,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// What is written.
+    /// The finished body.
     fn body(self, output: Vec<Expression>) -> Body {
         Body {
             constants: self.constants.into_values().collect(),
@@ -155,7 +156,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// Writes the numbers of the output that no step computes.
+    /// Writes the numbers of the output that need no step.
     fn known_places(&mut self) {
         let known = self.places.as_mut().map(Places::known);
         for (place, entry) in known.unwrap_or_default() {
@@ -188,7 +189,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// Writes the sines and cosines of angles that are known from the start.
+    /// Writes the sines and cosines of angles that depend on inputs alone.
     fn angles(&mut self, early: &angles::Early) {
         if early.pairs.is_empty() {
             return;
@@ -214,7 +215,7 @@ impl<'p> Writer<'p> {
             });
         }
         self.statements.push(Statement::Pairs(pairs));
-        // They are of all legs at once.
+        // They belong to all legs at once.
         for (_, section) in &mut self.sections[first..] {
             "sines and cosines".clone_into(section);
         }
@@ -246,7 +247,7 @@ impl<'p> Writer<'p> {
         1
     }
 
-    /// The angle, if steps `at` and `at + 1` are its cosine and sine in whatever order.
+    /// The angle, if steps `at` and `at + 1` are its cosine and sine in any order.
     fn pair(&self, at: usize) -> Option<Operand> {
         let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
         match (operation(at)?, operation(at + 1)?) {
@@ -277,8 +278,9 @@ impl<'p> Writer<'p> {
         2
     }
 
-    /// Writes the guards whose values are there, each behind those before it: of several legs that fail at
-    /// once the first is told, in whichever order their values come.
+    /// Writes the guards whose values are known, in their order.
+    ///
+    /// If several legs fail at once the first is reported, whatever the order of their values.
     fn guards(&mut self) {
         let program = self.program;
         while let Some(guard) = program.guards.get(self.guarded) {
@@ -296,7 +298,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// A name for the value of a step that no other value has.
+    /// A unique name for the value of a step.
     fn declare(&mut self, at: usize) -> String {
         let (taken, reserved) = (&self.taken, self.reserved);
         let is_free = |name: &str| !taken.contains(name) && !reserved(name);
@@ -324,7 +326,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// A number, or the named constant that it is.
+    /// A number, or its named constant.
     fn constant(&mut self, value: f64) -> Expression {
         let known = self.labels.dimension(value.abs());
         let Some(dimension) = known.filter(|known| !(self.reserved)(&known.name)) else {
@@ -360,7 +362,7 @@ impl<'p> Writer<'p> {
             Operation::Sign(a) => self.call(Call::Sign, &[a]),
             Operation::Signed(a, b) => self.call(Call::Signed, &[a, b]),
             Operation::Atan2(y, x) => self.call(Call::Atan2, &[y, x]),
-            // A sine without its cosine, or the other way round.
+            // A sine without its cosine, or a cosine without its sine.
             Operation::Sine(a) => self.part(Call::Sine, a),
             Operation::Cosine(a) => self.part(Call::Cosine, a),
         }
@@ -398,8 +400,10 @@ impl<'p> Writer<'p> {
     }
 }
 
-/// Where sections begin, from the section of every assignment. A few assignments on their own, of what a
-/// leg and the platform share for instance, stand in the section around them.
+/// Starts of sections, from the section of every assignment.
+///
+/// A few isolated assignments, for instance of values that a leg and the platform share, join the
+/// section around them.
 fn sections(assigned: &[(String, String)]) -> Vec<(String, String)> {
     const SHORTEST: usize = 4;
     let mut starts: Vec<(String, String)> = Vec::new();

@@ -1,9 +1,9 @@
-//! Constants of a description found again in a function: `L_AB`, `R_P_SQUARED_PER_L_BC`.
+//! Recovers expressions of description constants from numbers: `L_AB`, `R_P_SQUARED_PER_L_BC`.
 //!
-//! Folding turns the numbers of a description into others. Those that are a simple expression of its named
-//! constants, a power, product or quotient of two of them, get a name and the expression. Of equally simple
-//! expressions with one value none is taken, for which was meant cannot be told; and a number of one or two digits is
-//! by chance what a long expression gives.
+//! Constant folding turns the numbers of a description into others. A number that is a simple
+//! expression of named constants, a power, product or quotient of two, gets a name and the
+//! expression. If several equally simple expressions have the same value, none is used, since the
+//! intended one is unknown. Numbers of one or two digits may equal a long expression by chance.
 
 use crate::model::RobotModel;
 
@@ -12,10 +12,10 @@ use crate::model::RobotModel;
 pub struct Dimension {
     /// The name of the Rust constant.
     pub name: String,
-    /// What it is, in the description's names.
+    /// Its expression in the description's names.
     pub expression: String,
     value: f64,
-    /// How much stands in the expression: the simplest of one value is taken.
+    /// Complexity of the expression: the simplest one of a value is used.
     size: usize,
 }
 
@@ -23,14 +23,14 @@ pub struct Dimension {
 #[derive(Debug, Clone, Default)]
 pub struct Dimensions(Vec<Dimension>);
 
-/// Size of expressions that many numbers of few digits have as their value.
+/// Complexity from which expressions match numbers of few digits by chance.
 const LONG: usize = 4;
 
-/// Two numbers that differ by less than this fraction are one: some roundings.
+/// Relative difference, of some roundings, below which two numbers are equal.
 const ROUNDING: f64 = 1e-15;
 
 impl Dimensions {
-    /// Those of a robot's description.
+    /// The named numbers of a robot's description.
     #[must_use]
     pub fn of(model: &RobotModel) -> Self {
         let constants = &model.mechanism.constants;
@@ -41,7 +41,7 @@ impl Dimensions {
         Self::made_of(&values)
     }
 
-    /// What can be made of named values.
+    /// All expressions of named values.
     fn made_of(values: &[(&str, f64)]) -> Self {
         let mut bases: Vec<Base> = Vec::new();
         for &(name, value) in values {
@@ -70,7 +70,7 @@ impl Dimensions {
         Self(all)
     }
 
-    /// The name of a positive number, if there is one that is simpler than all others.
+    /// The name of a positive number, if one expression is simpler than all others.
     #[must_use]
     pub fn find(&self, value: f64) -> Option<&Dimension> {
         let mut fitting = self.0.iter().filter(|d| is_same(d.value, value));
@@ -80,12 +80,13 @@ impl Dimensions {
     }
 }
 
-/// Whether a number needs no name in any expression: twice something is no ratio of lengths, even if there is one of 2.
+/// Whether a number needs no name: a factor of two is no ratio of lengths, even if one has this
+/// value.
 fn stands_for_itself(value: f64) -> bool {
     [0.5, 1.0, 2.0].into_iter().any(|own| is_same(own, value))
 }
 
-/// Whether a long expression has a value of one or two digits, as 2.5, which others will have, too.
+/// Whether a long expression has a value of one or two digits, such as 2.5, that others share.
 fn is_by_chance(dimension: &Dimension) -> bool {
     let value = dimension.value;
     let tens = 10.0_f64.powf(1.0 - value.log10().floor());
@@ -113,7 +114,7 @@ impl Base {
         }
     }
 
-    /// v, v², 1/v and their like.
+    /// v, v², 1/v and similar powers.
     fn powers(&self) -> Vec<Dimension> {
         let (n, v) = (&self.name, self.value);
         let own = match self.others.is_empty() {
@@ -147,7 +148,7 @@ impl Base {
         ]
     }
 
-    /// v/w and its like.
+    /// v/w and similar quotients.
     fn quotients(&self, other: &Self) -> Vec<Dimension> {
         let (n, v, m, w) = (&self.name, self.value, &other.name, other.value);
         vec![
@@ -167,7 +168,7 @@ impl Base {
         ]
     }
 
-    /// v w.
+    /// The product v w.
     fn times(&self, other: &Self) -> Dimension {
         let (n, m) = (&self.name, &other.name);
         self.dimension(
@@ -212,7 +213,7 @@ mod tests {
         // 1.2 is twice b; 0.18 is a b and 2 a².
         assert_eq!(name(&values, 1.2).as_deref(), Some("TWICE_B: 2 b"));
         assert_eq!(name(&values, 0.18), None);
-        // 2.5 is r / l², and more likely 1 / (2 l) or a number.
+        // 2.5 is r / l², but more likely 1 / (2 l) or a number.
         let values = [("l", 0.2), ("r", 0.1)];
         assert_eq!(
             name(&values, 2.5).as_deref(),

@@ -1,4 +1,4 @@
-//! What inputs and outputs of a function are called where a name is made of them.
+//! Labels of a function's inputs and outputs, for use in names.
 
 use super::dimensions::{Dimension, Dimensions};
 use crate::lowering::{Column, Gathered, Lanes, Program};
@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 /// Short names of a function's inputs and outputs.
 #[derive(Debug, Default)]
 pub struct Labels {
-    /// For every input its elements.
+    /// Labels of the elements of every input.
     inputs: Vec<Vec<Label>>,
-    /// For every entry of the output, row by row; empty where it has no name of its own.
+    /// Labels of the output's entries, row by row; empty for entries without a name.
     outputs: Vec<String>,
     /// Names of the legs.
     places: Vec<String>,
@@ -22,12 +22,12 @@ pub struct Labels {
     dimensions: Dimensions,
 }
 
-/// A part of a name and the leg that it belongs to, `q1` and `leg2`; the leg may be empty.
+/// A quantity and the leg that it belongs to, such as `q1` and `leg2`; the leg may be empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
-    /// What it is.
+    /// The quantity.
     pub what: String,
-    /// Where it is.
+    /// The leg.
     pub place: String,
 }
 
@@ -43,7 +43,7 @@ impl Label {
 }
 
 impl Labels {
-    /// What holds for all functions of a robot.
+    /// Labels common to all functions of a robot.
     #[must_use]
     pub fn of_robot(model: &RobotModel) -> Self {
         let legs = model.mechanism.legs.iter().map(|leg| leg.name.clone());
@@ -57,7 +57,7 @@ impl Labels {
         }
     }
 
-    /// The names of a robot's function.
+    /// Labels of a robot's function.
     #[must_use]
     pub fn new(model: &RobotModel, function: &CompiledFunction) -> Self {
         let inputs = &function.program.inputs;
@@ -71,7 +71,7 @@ impl Labels {
         }
     }
 
-    /// Labels of one input's elements, and a leg.
+    /// Labels of one input's elements and a leg.
     #[cfg(test)]
     pub(super) fn of_input(elements: &[&str], leg: &str) -> Self {
         let mut labels = Self {
@@ -83,7 +83,7 @@ impl Labels {
         labels
     }
 
-    /// The name of an input's element.
+    /// Label of an input's element.
     #[must_use]
     pub fn input(&self, array: usize, index: usize) -> Option<&Label> {
         self.inputs.get(array)?.get(index)
@@ -100,7 +100,7 @@ impl Labels {
         self.dimensions.find(value)
     }
 
-    /// A name taken apart: what it is and where.
+    /// Splits a name into quantity and leg.
     #[must_use]
     pub fn parsed(&self, name: &str) -> Label {
         let ends = |place: &&String| {
@@ -124,7 +124,8 @@ impl Labels {
         }
     }
 
-    /// Those of a program in lanes, whose columns stand elsewhere: a leg's are called without the leg's number.
+    /// Labels of a program in lanes, whose columns have other places: a leg's lack the leg's
+    /// number.
     #[must_use]
     pub(crate) fn in_lanes(mut self, lanes: &Lanes) -> Self {
         let Gathered::Columns(columns) = &lanes.gathered else {
@@ -147,7 +148,7 @@ impl Labels {
         self
     }
 
-    /// For every step of a program the name that its value has as an entry of the output.
+    /// For every step of a program, the name of its value as an entry of the output.
     #[must_use]
     pub(crate) fn of_outputs(&self, program: &Program) -> Vec<Option<String>> {
         let mut names = vec![None; program.steps.len()];
@@ -166,12 +167,12 @@ impl Labels {
     }
 }
 
-/// A coordinate's name as a part of a word: joints of branches are called with their leg's, `foot.pitch`.
+/// A coordinate's name as part of a word; joints of branches include the leg, `foot.pitch`.
 fn word(name: &str) -> String {
     name.replace('.', "_")
 }
 
-/// The elements of an input.
+/// Labels of the elements of an input.
 fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     let plain = |what: String| Label {
         what,
@@ -229,7 +230,7 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     }
 }
 
-/// `vx`, `wz`: the twist's coordinates.
+/// Labels of the twist's coordinates: `vx`, `wz`.
 fn twist(model: &RobotModel) -> Vec<String> {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let Some(platform) = &model.mechanism.platform else {
@@ -244,7 +245,7 @@ fn twist(model: &RobotModel) -> Vec<String> {
     coordinates.into_iter().map(label).collect()
 }
 
-/// What the entries of an output are called.
+/// Labels of the entries of an output.
 fn outputs(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
     let shape = &function.program.output.shape;
     let columns = model.columns_of(function.computes);
@@ -260,7 +261,7 @@ fn outputs(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
     Vec::new()
 }
 
-/// What an identification model's row is the equation of: a twist coordinate or a joint.
+/// Label of the equation in an identification model's row: a twist coordinate or a joint.
 fn row(model: &RobotModel, function: Function, row: usize) -> String {
     let joints = model.mechanism.joints();
     let joint = |at: usize| {

@@ -1,9 +1,9 @@
-//! What the names in a generated file mean: a table for its head, with the symbols and equations of Briot,
-//! Krut, Gautier 2015.
+//! Legend of the names in a generated file: a table with symbols and equations of Briot, Krut,
+//! Gautier 2015.
 //!
-//! A kind of name is written as a pattern: `#` stands for one or more of the robot's joints, `@` for an axis (x, y, z),
-//! `%` for a twist coordinate (vx, wz), `$` for a number. Only kinds that occur are listed, each by the first
-//! of its names.
+//! Each kind of name is a pattern: `#` matches one or more of the robot's joints, `@` an axis (x,
+//! y, z), `%` a twist coordinate (vx, wz), `$` a number. Only kinds that occur are listed, each by
+//! its first name.
 
 use super::labels::Labels;
 use std::collections::BTreeSet;
@@ -23,7 +23,7 @@ const fn kind(pattern: &'static str, symbol: &'static str, meaning: &'static str
     }
 }
 
-/// All kinds of names that the derivation gives.
+/// All kinds of names that the derivation assigns.
 const KINDS: &[Kind] = &[
     kind(
         "%",
@@ -303,7 +303,7 @@ const KINDS: &[Kind] = &[
     ),
 ];
 
-/// The lines of documentation that explain the names of a robot's functions.
+/// Lines of documentation that explain the names in a robot's functions.
 #[must_use]
 pub fn lines(labels: &Labels, names: &BTreeSet<String>) -> Vec<String> {
     let parsed: Vec<(String, String)> = names
@@ -346,7 +346,7 @@ pub fn lines(labels: &Labels, names: &BTreeSet<String>) -> Vec<String> {
         .collect()
 }
 
-/// Whether a name is of a kind, where these are the names of the joints.
+/// Whether a name matches a pattern; `joints` are the names of the joints.
 fn fits(pattern: &str, name: &str, joints: &[String]) -> bool {
     let mut letters = pattern.chars();
     let Some(first) = letters.next() else {

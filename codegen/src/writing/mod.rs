@@ -1,9 +1,9 @@
-//! Programs as people read them, in no language yet: what the Rust and the C of a robot have in common.
+//! Readable programs, independent of a language: the common part of the Rust and C backends.
 //!
-//! Values have `names`, constants of the description theirs (`dimensions`), `labels` are what inputs and
-//! outputs are called, the `legend` says what names mean. `body` is a program as assignments (`statement`)
-//! with these names, `outline` a function around it: its arguments, what is found before it runs, its documentation.
-//! `text` makes comments of what a person wrote.
+//! `names` has names of values, `dimensions` those of description constants, `labels` those of
+//! inputs and outputs; `legend` explains the names. `body` is a program as assignments
+//! (`statement`) with these names. `outline` is a function around it: arguments, iterations before
+//! it, documentation. `text` converts text of users to comments.
 
 #![allow(unreachable_pub, reason = "public to the languages")]
 

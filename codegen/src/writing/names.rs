@@ -1,15 +1,15 @@
 //! Names for the intermediate values of a function.
 //!
-//! What the derivation has named keeps its name. A value that is an entry of the output is called by its
-//! column and row. Any other value is called by its operands, as long as that stays short: `a_b` is a
-//! product, `a_plus_b` and `a_minus_b` are sums, `a_per_b` is a quotient, `inv_a` a reciprocal, `a_squared`
-//! a square; `minus_a` is the negative of what is called `a`. What is left is numbered within its section.
+//! Names from the derivation are kept. A value that is an entry of the output is named by its
+//! column and row. Other values are named by their operands, as long as that stays short: `a_b` is
+//! a product, `a_plus_b` and `a_minus_b` are sums, `a_per_b` is a quotient, `inv_a` a reciprocal,
+//! `a_squared` a square, and `minus_a` a negative. All others are numbered within their section.
 
 use super::labels::{Label, Labels};
 use crate::lowering::{Operand, Operation, Program};
 use std::collections::HashMap;
 
-/// Longest name that is made of operands' names.
+/// Longest name composed of operands' names.
 const LONGEST: usize = 34;
 
 /// The names of a function's steps.
@@ -17,13 +17,13 @@ pub struct Names<'p> {
     program: &'p Program,
     labels: &'p Labels,
     of_outputs: Vec<Option<String>>,
-    /// How many values are numbered in each section.
+    /// Count of numbered values in each section.
     numbered: HashMap<String, usize>,
-    /// Names that are given already: by the step, and of what kind.
+    /// Assigned names by step, with their kind.
     given: Vec<Option<Term>>,
 }
 
-/// A name as a part of others.
+/// A name as part of other names.
 #[derive(Debug, Clone)]
 struct Term {
     negative: bool,
@@ -31,14 +31,14 @@ struct Term {
     kind: Kind,
 }
 
-/// What a name can be a part of.
+/// The composite names that a name can be part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Of everything.
+    /// All.
     Name,
-    /// Of products and sums.
+    /// Products and sums.
     Product,
-    /// Of nothing: it would need parentheses.
+    /// None: it would need parentheses.
     Closed,
 }
 
@@ -55,7 +55,7 @@ impl<'p> Names<'p> {
         }
     }
 
-    /// The name of a step's value, which `is_free` says no other has, and whether it is more than a number.
+    /// A name for a step's value; `is_free` tests whether a name is unused.
     pub fn name(&mut self, at: usize, is_free: &dyn Fn(&str) -> bool) -> String {
         let term = self.meaningful(at, is_free);
         match term {
@@ -77,7 +77,7 @@ impl<'p> Names<'p> {
         own.chain(made).find(|term| is_free(&text(term)))
     }
 
-    /// A given name taken apart.
+    /// Splits a name into sign and label.
     fn term(&self, name: &str) -> Term {
         let positive = name.strip_prefix("minus_");
         Term {
@@ -102,7 +102,7 @@ impl<'p> Names<'p> {
         }
     }
 
-    /// What an operand is called; `None` for what has no name.
+    /// The name of an operand; `None` if it has none.
     fn operand(&self, operand: Operand) -> Option<Term> {
         match operand {
             Operand::Constant(value) => {
@@ -125,7 +125,7 @@ impl<'p> Names<'p> {
                 label: self.labels.input(array, index)?.clone(),
                 kind: Kind::Name,
             }),
-            // A value that is written where it is used has no name of its own; its parts may have.
+            // An inlined value has no name of its own, but its operands may have.
             Operand::Step(at) => match &self.given[at] {
                 Some(term) => Some(term.clone()),
                 None => self.made(self.program.steps[at].operation),
@@ -133,7 +133,7 @@ impl<'p> Names<'p> {
         }
     }
 
-    /// A name made of the operands'.
+    /// A name composed of the operands' names.
     fn made(&self, operation: Operation) -> Option<Term> {
         match operation {
             Operation::Add(a, b) if a == b => self.prefixed("twice", a),
@@ -153,18 +153,18 @@ impl<'p> Names<'p> {
         }
     }
 
-    /// An operand that can be a part of a product.
+    /// An operand's name, if it can be part of a product.
     fn factor(&self, operand: Operand) -> Option<Term> {
         self.operand(operand)
             .filter(|term| term.kind != Kind::Closed)
     }
 
-    /// An operand that has a name of its own.
+    /// An operand's name, if it is not composite.
     fn whole(&self, operand: Operand) -> Option<Term> {
         self.operand(operand).filter(|term| term.kind == Kind::Name)
     }
 
-    /// `what_a` of an odd function.
+    /// `what_a` for an odd function.
     fn prefixed(&self, what: &str, a: Operand) -> Option<Term> {
         let a = self.whole(a)?;
         let label = Label {
@@ -178,7 +178,7 @@ impl<'p> Names<'p> {
         })
     }
 
-    /// `what_a` of a function of what is not negative.
+    /// `what_a` for a function of a nonnegative value.
     fn of_positive(&self, what: &str, a: Operand) -> Option<Term> {
         self.prefixed(what, a).filter(|term| !term.negative)
     }
@@ -197,7 +197,7 @@ impl<'p> Names<'p> {
 
     fn product(&self, a: Operand, b: Operand) -> Option<Term> {
         let (a, b) = (self.factor(a)?, self.factor(b)?);
-        // `half_a_b` for a × half b: numbers stand in front.
+        // `half_a_b` for a × half b: numbers come first.
         let (first, second) = match matches!(b.label.what.as_str(), "half" | "twice") {
             true => (&b, &a),
             false => (&a, &b),
@@ -218,8 +218,7 @@ impl<'p> Names<'p> {
         })
     }
 
-    /// a ± b, with the positive one first; the sum of two negatives is the negative of a sum, for which
-    /// there is no name.
+    /// a ± b, with the positive one first. The sum of two negatives has no name.
     fn sum(&self, a: Operand, b: Operand, is_difference: bool) -> Option<Term> {
         let (a, mut b) = (self.factor(a)?, self.factor(b)?);
         b.negative ^= is_difference;
@@ -246,7 +245,7 @@ fn text(term: &Term) -> String {
     }
 }
 
-/// Two names joined; a place that both share, or that only one has, stands at the end.
+/// Joins two names; a leg that both share, or that only one has, comes last.
 fn pair(a: &Label, word: &str, b: &Label) -> Label {
     let place = match a.place.is_empty() {
         true => &b.place,

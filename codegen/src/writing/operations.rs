@@ -1,10 +1,10 @@
-//! What functions cost, as their documentation and that of the type says it.
+//! Operation counts in the documentation of functions and of the robot type.
 
 use crate::lowering::Cost;
 use crate::model::RobotModel;
 use crate::total_cost::{SideBySide, TotalCost};
 
-/// The lines of a function.
+/// Lines for a function.
 #[must_use]
 pub fn of_function(cost: &TotalCost) -> Vec<String> {
     let mut lines = vec![format!(" {}.", cost.once)];
@@ -45,7 +45,7 @@ pub fn of_function(cost: &TotalCost) -> Vec<String> {
     lines
 }
 
-/// The lines of a robot: a table of its functions.
+/// Lines for a robot: a table of its functions.
 #[must_use]
 pub fn of_robot(model: &RobotModel) -> Vec<String> {
     let mut lines = vec![
@@ -70,7 +70,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
     lines
 }
 
-/// `; in lanes of vectors 237 + 6 x 419`, of legs side by side.
+/// Text for the operations of legs in SIMD lanes: `; in lanes of vectors 237 + 6 x 419`.
 fn lanes(cost: &TotalCost) -> String {
     let told = cost.side_by_side.map(|side| {
         let (once, each, legs) = (side.once, side.each, side.legs);
@@ -83,7 +83,7 @@ fn lanes(cost: &TotalCost) -> String {
     told.unwrap_or_default()
 }
 
-/// `362, 4 √, 1 sc, 8 gd`.
+/// Short text of a cost: `362, 4 √, 1 sc, 8 gd`.
 fn short(cost: &Cost) -> String {
     let others = [
         (cost.square_roots, "√"),

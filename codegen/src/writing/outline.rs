@@ -1,42 +1,43 @@
-//! A function around its body: arguments, what is found before the body runs, and what its documentation
-//! says.
+//! A function around its body: arguments, iterations before the body, and documentation.
 
 use crate::derivation::MotionInput;
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::{Columns, Function};
 
-/// The table of parameters that columns stand for.
+/// The table of parameters that corresponds to the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Table {
     /// Standard parameters.
     Parameters,
     /// Base parameters.
     BaseParameters,
-    /// The payload's.
+    /// Payload parameters.
     PayloadParameters,
 }
 
 /// A function of a robot as its caller sees it.
 pub struct Outline<'m> {
-    /// The arguments in order: the program's inputs, but for what is found first, and what it is found from.
+    /// The arguments in order: the program's inputs, with values of iterations replaced by the
+    /// iterations' inputs.
     pub arguments: Vec<Array>,
-    /// Whether forward kinematics finds the pose that the rest takes.
+    /// Whether forward kinematics computes the program's pose.
     pub finds_pose: bool,
-    /// Whether Newton's method finds the joints that the program takes.
+    /// Whether Newton's method computes the program's joints.
     pub finds_joints: bool,
-    /// Whether the joints that Newton's method finds are all that there is to the function.
+    /// Whether the function consists of Newton's method for the joints only.
     pub is_newton: bool,
-    /// The function from joints that has the same program: where Newton's method finds the joints of a
-    /// pose, the function from the pose only calls it.
+    /// The function of the joints with the same program.
+    ///
+    /// If Newton's method computes the joints, the function of the pose only calls it.
     pub twin: Option<&'m CompiledFunction>,
-    /// From what it is evaluated, in a sentence.
+    /// Sentence on the input from which it is evaluated.
     pub origin: &'static str,
-    /// What each argument is.
+    /// Description of each argument.
     pub meanings: Vec<(String, String)>,
-    /// What the columns of the output stand for.
+    /// The parameters of the output's columns.
     pub columns: Option<Table>,
-    /// Whether more than an input that is not finite can be wrong.
+    /// Whether it can fail for other reasons than an input that is not finite.
     pub can_fail: bool,
 }
 
@@ -65,8 +66,10 @@ impl<'m> Outline<'m> {
 }
 
 impl Outline<'_> {
-    /// Whether the output is written into a place that the caller hands in, number by number: that of models with a
-    /// column for each parameter, which is too large to be handed back without a copy.
+    /// Whether the caller provides the matrix into which the output is written, number by number.
+    ///
+    /// It holds for models with a column per parameter, which are too large to be returned without
+    /// a copy.
     #[must_use]
     pub fn is_placed(&self) -> bool {
         self.columns.is_some()
@@ -110,7 +113,7 @@ fn origin(model: &RobotModel, function: &CompiledFunction) -> &'static str {
     }
 }
 
-/// What the arguments are, each with its name.
+/// The arguments' names and descriptions.
 fn meanings(model: &RobotModel, function: &CompiledFunction) -> Vec<(String, String)> {
     let mut meanings = Vec::new();
     for array in &function.program.inputs {
@@ -141,7 +144,7 @@ fn columns(function: &CompiledFunction) -> Option<Table> {
     })
 }
 
-/// What an input is.
+/// Description of an input.
 #[must_use]
 pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
     let platform = model.mechanism.platform.as_ref();

@@ -1,9 +1,9 @@
-//! Where the values of a program stand in an output that is written number by number.
+//! Places of a program's values in an output that is written number by number.
 
 use crate::lowering::{Entry, Operand, Program};
 use std::ops::Range;
 
-/// Numbers of an output side by side in a row.
+/// Adjacent numbers in a row of an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     /// The row.
@@ -12,17 +12,17 @@ pub struct Place {
     pub columns: Range<usize>,
 }
 
-/// The numbers of an output, each beside its place.
+/// The numbers of an output with their places.
 #[derive(Debug)]
 pub struct Places {
-    /// Those that are known before the first step.
+    /// Numbers that are known before the first step.
     known: Vec<(Place, Entry)>,
-    /// Those that each step computes.
+    /// Numbers that each step computes.
     of_steps: Vec<Vec<(Place, Entry)>>,
 }
 
 impl Places {
-    /// Those of a program's output.
+    /// The places of a program's output.
     #[must_use]
     pub fn new(program: &Program) -> Self {
         let mut places = Self {
@@ -35,7 +35,7 @@ impl Places {
         };
         for (row, entries) in program.entries.chunks(columns).enumerate() {
             let mut first = 0;
-            // Zeros and other known numbers that stand side by side are written at once.
+            // Adjacent equal constants, such as zeros, are written at once.
             for same in entries.chunk_by(|a, b| a == b && step(*a).is_none()) {
                 let end = first + same.len();
                 let place = Place {
@@ -52,13 +52,13 @@ impl Places {
         places
     }
 
-    /// Those that are known before the first step.
+    /// Numbers that are known before the first step.
     #[must_use]
     pub fn known(&mut self) -> Vec<(Place, Entry)> {
         std::mem::take(&mut self.known)
     }
 
-    /// Those that a step computes.
+    /// Numbers that a step computes.
     #[must_use]
     pub fn of(&mut self, step: usize) -> Vec<(Place, Entry)> {
         self.of_steps

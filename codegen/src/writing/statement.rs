@@ -1,16 +1,16 @@
-//! Statements and expressions as all languages have them.
+//! Statements and expressions common to all languages.
 
 use crate::lowering::Condition;
 use std::ops::Range;
 
-/// How tightly an expression binds: sums, products, atoms.
+/// Binding strength of an expression: sums, products, atoms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Binding {
     /// a + b, a - b.
     Sum,
     /// a b, a / b, -a.
     Product,
-    /// What needs no parentheses.
+    /// Needs no parentheses.
     Atom,
 }
 
@@ -27,7 +27,7 @@ pub enum Operator {
     Div,
 }
 
-/// A function that a language has to know.
+/// A function that each backend provides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Call {
     /// Square root.
@@ -53,17 +53,17 @@ pub enum Expression {
     Constant {
         /// The constant's name.
         name: String,
-        /// Whether its negative is meant.
+        /// Whether it is the negative of the constant.
         negative: bool,
     },
     /// Element of an input array.
     Input {
-        /// Which input.
+        /// Index of the input.
         array: usize,
-        /// Which element.
+        /// Index of the element.
         index: usize,
     },
-    /// A value that was assigned.
+    /// An assigned value.
     Value(String),
     /// The negative.
     Negative(Box<Self>),
@@ -71,12 +71,12 @@ pub enum Expression {
     Binary(Operator, Box<[Self; 2]>),
     /// A function of operands.
     Call(Call, Vec<Self>),
-    /// What stands where a program breaks a rule that lowering guarantees.
+    /// A violated invariant of lowering; the generated code does not compile.
     Broken(&'static str),
 }
 
 impl Operator {
-    /// How tightly it binds, and how tightly its right operand has to.
+    /// Binding strength of the operator, and that required of its right operand.
     #[must_use]
     pub const fn binding(self) -> (Binding, Binding) {
         match self {
@@ -88,7 +88,7 @@ impl Operator {
 }
 
 impl Expression {
-    /// How tightly the expression binds.
+    /// Binding strength of the expression.
     #[must_use]
     pub fn binding(&self) -> Binding {
         match self {
@@ -100,7 +100,7 @@ impl Expression {
     }
 }
 
-/// Sine and cosine of an angle, each with its name if it is wanted.
+/// Sine and cosine of an angle, each with a name if it is needed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
     /// The angle.
@@ -121,7 +121,7 @@ pub enum Statement {
         /// The value.
         value: Expression,
     },
-    /// Sines and cosines of several angles, which do not depend on one another.
+    /// Sines and cosines of several independent angles.
     Pairs(Vec<Pair>),
     /// Sine and cosine of one angle.
     Pair(Pair),
@@ -132,7 +132,7 @@ pub enum Statement {
         /// The condition.
         condition: Condition,
     },
-    /// Numbers of the output that have the same value.
+    /// Equal numbers of the output.
     Place {
         /// Their row.
         row: usize,

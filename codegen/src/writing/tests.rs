@@ -1,4 +1,4 @@
-//! A name is a statement about a value; here it is held against numbers that come from elsewhere.
+//! Compares named values with independently computed numbers.
 
 use crate::Request;
 use crate::compile::compile_with;
@@ -56,7 +56,7 @@ fn steps(program: &Program, state: &State) -> Vec<f64> {
     evaluated(&probe, state)
 }
 
-/// What names of a planar robot's quantities mean, in numbers.
+/// Values of a planar robot's named quantities.
 fn meanings(model: &RobotModel, state: &State) -> HashMap<String, f64> {
     let mut meanings = HashMap::new();
     let mechanism = &model.mechanism;
@@ -139,7 +139,7 @@ fn names_are_true() {
                         continue;
                     };
                     checked += 1;
-                    // The joints of a state close the legs to eight digits or so.
+                    // The joints of a state close the legs to about eight digits.
                     let error = (value - meant).abs();
                     assert!(
                         error <= 1e-6 * (1.0 + meant.abs()),

@@ -1,13 +1,12 @@
-//! Text of a description that goes into comments and documentation.
+//! Sanitises text of a description for comments and documentation.
 //!
-//! What a person writes as `summary`, `source` or the name of a file must neither end a comment nor change
-//! how the lines around it are read: no character that breaks a line, that is not seen or that turns the
-//! direction of writing, and in documentation no mark that Markdown would take for its own.
+//! A `summary`, a `source` or a file name must neither end a comment nor change how its context is
+//! read. So line breaks, invisible characters and those that change the writing direction are
+//! removed. In documentation, Markdown syntax is escaped, too.
 
 use overact_core::text::is_invisible;
 
-/// The text on one line, of visible characters alone: what separates words is one space, what is not seen
-/// is left out.
+/// The text on one line: words separated by one space, without invisible characters.
 #[must_use]
 pub fn plain(text: &str) -> String {
     let visible = |c: &char| !is_invisible(*c);
@@ -18,12 +17,12 @@ pub fn plain(text: &str) -> String {
     words.join(" ")
 }
 
-/// The text as a part of a documentation comment, where every mark stands for itself.
+/// The text as part of a documentation comment, with escaped Markdown.
 #[must_use]
 pub fn documentation(text: &str) -> String {
     let text = plain(text);
     let mut out = String::with_capacity(text.len());
-    // A digit or a mark in front would begin a list or a heading.
+    // A leading digit or mark could begin a list or a heading.
     let number = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     for (at, c) in text.char_indices() {
         let is_mark = matches!(

@@ -1,4 +1,4 @@
-//! Errors of the command line and of files that it writes, and of overact itself.
+//! Errors of the command line, of files that it writes, and of overact itself.
 
 super::codes! {
     USAGE 601 "arguments that do not go together"

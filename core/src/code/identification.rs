@@ -1,4 +1,4 @@
-//! Errors of an identification: data that determine nothing, settings that can't be.
+//! Errors of an identification: insufficient data, and invalid settings.
 
 super::codes! {
     SETTINGS 401 "settings of the identification that can't be"

@@ -1,4 +1,4 @@
-//! Errors of measured logs and of `[data]`, which says what is in them.
+//! Errors of measured logs and of `[data]`, which describes them.
 
 super::codes! {
     UNREADABLE_LOG 301 "a log can't be opened or read to its end"

@@ -1,4 +1,4 @@
-//! Errors of the mechanism that a description makes.
+//! Errors of the mechanism of a description.
 
 super::codes! {
     DOES_NOT_CLOSE 201 "a leg does not reach its end at home"

@@ -1,12 +1,12 @@
-//! Codes of errors, and what each one means: its cause and its cure.
+//! Error codes with their explanations: cause and remedy.
 //!
-//! Whatever refuses an input says why with one of these codes, so that programs tell errors from one another
-//! without reading sentences, and a person finds more about one with `overact explain CODE`. A code can't be made
-//! anywhere else than in the tables of this folder, so that there is none without an explanation. A number that
-//! has been given stays: a code that is not used any more is not given to something else.
+//! Every rejected input has one of these codes. Programs distinguish errors by code, and `overact
+//! explain CODE` prints the explanation. Codes are created only in the tables of this folder, so
+//! each has an explanation. Numbers are permanent: the number of a code that is no longer used is
+//! not reused.
 //!
-//! The hundreds say what is wrong: 1 a description, 2 its mechanism, 3 logs, 4 an identification, 5 a state, an
-//! experiment or an excitation, 6 the command line and its files, 9 overact itself.
+//! The hundreds give the area: 1 a description, 2 its mechanism, 3 logs, 4 an identification, 5 a
+//! state, an experiment or an excitation, 6 the command line and its files, 9 overact itself.
 
 mod command;
 mod description;
@@ -17,24 +17,24 @@ mod states;
 
 use core::fmt;
 
-/// The code of an error, `OA102` for instance.
+/// An error code, such as `OA102`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Code(u16);
 
-/// What a code means.
+/// Explanation of an error code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Explanation {
     /// The code.
     pub code: Code,
-    /// What is wrong, in a few words.
+    /// The error, in a few words.
     pub title: &'static str,
-    /// How it comes about.
+    /// Cause of the error.
     pub cause: &'static str,
-    /// What to do about it.
+    /// Remedy.
     pub cure: &'static str,
 }
 
-/// A table of codes with what they mean.
+/// Defines a table of codes with their explanations.
 macro_rules! codes {
     ($($name:ident $number:literal $title:literal cause $cause:literal cure $cure:literal)*) => {
         impl $crate::code::Code {
@@ -44,7 +44,7 @@ macro_rules! codes {
             )*
         }
 
-        /// The codes of this file, in the order of their numbers.
+        /// The codes of this file in numerical order.
         pub(super) const TABLE: &[$crate::code::Explanation] = &[$(
             $crate::code::Explanation {
                 code: $crate::code::Code::$name,
@@ -57,7 +57,7 @@ macro_rules! codes {
 }
 use codes;
 
-/// What the hundreds are about, with their codes.
+/// The areas with their codes.
 const AREAS: [(&str, &[Explanation]); 7] = [
     ("Descriptions", description::TABLE),
     ("Mechanisms", mechanism::TABLE),
@@ -69,18 +69,18 @@ const AREAS: [(&str, &[Explanation]); 7] = [
 ];
 
 impl Code {
-    /// All codes by what they are about.
+    /// All codes by area.
     #[must_use]
     pub const fn areas() -> &'static [(&'static str, &'static [Explanation])] {
         &AREAS
     }
 
-    /// All codes in the order of their numbers.
+    /// All codes in numerical order.
     pub fn all() -> impl Iterator<Item = &'static Explanation> {
         AREAS.iter().flat_map(|(_, table)| table.iter())
     }
 
-    /// The code that is written so; `OA102`, `oa102` and `102` are one.
+    /// Parses a code; `OA102`, `oa102` and `102` are equal.
     #[must_use]
     pub fn named(text: &str) -> Option<Self> {
         let text = text.trim();
@@ -92,7 +92,7 @@ impl Code {
         Some(own.code)
     }
 
-    /// What it means.
+    /// The explanation of the code.
     #[must_use]
     pub fn explanation(self) -> &'static Explanation {
         Self::all()
@@ -102,7 +102,7 @@ impl Code {
 }
 
 impl fmt::Display for Code {
-    /// `OA102`
+    /// Writes `OA102`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "OA{:03}", self.0)
     }

@@ -1,4 +1,4 @@
-//! Errors of states at which a model is evaluated, of virtual experiments and of excitation.
+//! Errors of states at which a model is evaluated, of virtual experiments, and of excitation.
 
 super::codes! {
     OUT_OF_REACH 501 "a pose that a leg does not reach"

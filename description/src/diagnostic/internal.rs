@@ -1,25 +1,24 @@
-//! Errors of the generator itself: a broken invariant is told as such, and never as an error of the
-//! description.
+//! Errors of the generator itself: violated invariants, as opposed to errors of the description.
 
 use super::{Code, Diagnostic, Diagnostics};
 use std::fmt;
 
-/// A broken invariant of overact, with what a report of it needs.
+/// A violated invariant of overact, with the data for a bug report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InternalError {
-    /// The robot at which it was seen, as far as it is known.
+    /// The robot, if known.
     robot: Option<String>,
-    /// The stage or pass that broke it.
+    /// The stage or pass that violated it.
     stage: String,
-    /// What is wrong.
+    /// Description of the violation.
     message: String,
 }
 
 impl InternalError {
-    /// What to do about it.
+    /// Advice to the user.
     pub const HELP: &str = "this is a defect of overact and not of your input: please report it with the description and the command";
 
-    /// A broken invariant in a stage or pass.
+    /// A violated invariant in a stage or pass.
     #[must_use]
     pub fn new(stage: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
@@ -29,7 +28,7 @@ impl InternalError {
         }
     }
 
-    /// With the name of the robot, where none is known yet.
+    /// Adds the name of the robot if it is not known yet.
     #[must_use]
     pub fn of_robot(self, robot: impl Into<String>) -> Self {
         let robot = self.robot.or_else(|| Some(robot.into()));
@@ -62,7 +61,7 @@ impl From<InternalError> for Diagnostics {
 }
 
 impl Diagnostics {
-    /// The broken invariant, if it is not the description that is wrong.
+    /// The violated invariant, if the error is not in the description.
     #[must_use]
     pub fn internal(&self) -> Option<&InternalError> {
         self.internal.as_deref()

@@ -1,8 +1,8 @@
-//! Source text, spans and collected errors, and how they are shown.
+//! Source text, spans, collected errors, and their rendering.
 //!
-//! A stage that finds an error notes a [`Diagnostic`] and goes on, so that one run shows every
-//! error of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
-//! styled for a terminal, or plain data for machines.
+//! A stage that finds an error records a [`Diagnostic`] and continues, so that one run shows all
+//! errors of a description. Nothing is printed here. Errors are rendered as plain text for
+//! `compile_error!`, styled text for a terminal, or data for programs.
 
 mod internal;
 mod render;
@@ -17,10 +17,10 @@ pub use suggestion::{did_you_mean, nearest};
 
 use std::ops::Range;
 
-/// A range of bytes of a source text.
+/// A range of bytes in a source text.
 pub type Span = Range<usize>;
 
-/// A text and what its user calls it.
+/// A text and its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
     /// The path as the user gave it.
@@ -29,7 +29,7 @@ pub struct Source {
     pub text: String,
 }
 
-/// A place in a text for people.
+/// A position in a text, for messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Position {
     /// Line, counted from 1.
@@ -48,7 +48,7 @@ impl Source {
         }
     }
 
-    /// Line and column at which a span starts; a start behind the end counts as the end.
+    /// Line and column of the start of a span; a start after the end of the text counts as the end.
     #[must_use]
     pub fn position(&self, span: &Span) -> Position {
         let before = &self.text[..self.boundary(span.start)];
@@ -68,7 +68,7 @@ impl Source {
         at
     }
 
-    /// The part of a span that lies on its first line, cut to character boundaries.
+    /// The part of a span on its first line, at character boundaries.
     fn first_line(&self, span: &Span) -> Span {
         let start = self.boundary(span.start);
         let end = self.boundary(span.end.max(start)).max(start);
@@ -83,36 +83,38 @@ impl Source {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostic {
-    /// What kind of error it is, under which it is explained.
+    /// The error code, under which the error is explained.
     pub code: Code,
-    /// What is wrong, in one sentence.
+    /// Description of the error in one sentence.
     pub message: String,
-    /// Where; `None` if it is no one place of the text.
+    /// Location; `None` for an error of the text as a whole.
     pub span: Option<Span>,
-    /// What stands there or should stand there: the text under the caret, possibly empty.
+    /// The text under the caret: what is or should be there, possibly empty.
     pub label: String,
-    /// A way out.
+    /// A remedy.
     pub help: Option<String>,
-    /// Which kind of error it is, for programs that have to tell it from others.
+    /// Kind of the error, for programs.
     pub kind: DiagnosticKind,
 }
 
-/// Kinds of errors that programs tell from others without reading the message.
+/// Kinds of errors that programs distinguish without reading the message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum DiagnosticKind {
-    /// An error that is told by its message alone.
+    /// An error that is described by its message only.
     #[default]
     Plain,
-    /// The legs leave the platform more motions than the description gives it, and the actuators drive all
-    /// of them: a sound robot, but one with more degrees of freedom.
+    /// The legs allow the platform more motions than described, and the actuators drive all of
+    /// them.
+    ///
+    /// The robot is valid, but has more degrees of freedom.
     NotHeld,
 }
 
-/// Characters of a message that are shown, at most.
+/// Largest number of characters of a message.
 const LONGEST_MESSAGE: usize = 2000;
 
-/// A message without its middle, if a value that it repeats is beyond reading.
+/// Shortens a message that contains a very long value, in the middle.
 fn short(message: String) -> String {
     let count = message.chars().count();
     if count <= LONGEST_MESSAGE {
@@ -125,7 +127,7 @@ fn short(message: String) -> String {
 }
 
 impl Diagnostic {
-    /// An error at a place.
+    /// An error at a location.
     #[must_use]
     pub fn new(code: Code, message: impl Into<String>, span: Span) -> Self {
         Self {
@@ -151,13 +153,13 @@ impl Diagnostic {
         }
     }
 
-    /// At a place, if it is known.
+    /// Sets the location, if known.
     #[must_use]
     pub fn at(self, span: Option<Span>) -> Self {
         Self { span, ..self }
     }
 
-    /// With a text under the caret.
+    /// Sets the text under the caret.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self {
@@ -166,7 +168,7 @@ impl Diagnostic {
         }
     }
 
-    /// With a way out.
+    /// Adds a remedy.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self {
@@ -175,13 +177,13 @@ impl Diagnostic {
         }
     }
 
-    /// Of a kind that programs tell from others.
+    /// Sets the kind, for programs.
     #[must_use]
     pub fn kind(self, kind: DiagnosticKind) -> Self {
         Self { kind, ..self }
     }
 
-    /// With a way out, if there is one.
+    /// Adds a remedy, if there is one.
     #[must_use]
     pub fn maybe_help(self, help: Option<String>) -> Self {
         Self {
@@ -191,7 +193,7 @@ impl Diagnostic {
     }
 }
 
-/// All errors that were found so far, in order of their place.
+/// All errors found so far, sorted by location.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
@@ -199,13 +201,13 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// None yet.
+    /// No errors.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds an error; the same error at the same place is kept once.
+    /// Adds an error, unless the same error at the same location exists.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let same = |d: &Diagnostic| d.message == diagnostic.message && d.span == diagnostic.span;
         if !self.list.iter().any(same) {
@@ -225,7 +227,7 @@ impl Diagnostics {
         }
     }
 
-    /// Whether an error at exactly this place is known.
+    /// Whether there is an error at exactly this location.
     #[must_use]
     pub fn has_error_at(&self, span: &Span) -> bool {
         self.list.iter().any(|d| d.span.as_ref() == Some(span))
@@ -243,12 +245,12 @@ impl Diagnostics {
         self.list.len()
     }
 
-    /// The errors in order of their place.
+    /// The errors, sorted by location.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.list.iter()
     }
 
-    /// The value, if there is no error.
+    /// The value if there is no error.
     ///
     /// # Errors
     /// The collection itself, if it is not empty.

@@ -1,35 +1,35 @@
-//! Errors as text for people and as data for machines.
+//! Rendering of errors as text and as data.
 
 use super::{Diagnostic, Diagnostics, Source};
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use overact_core::text::is_invisible;
 use serde::Serialize;
 
-/// An error with its place, ready for JSON.
+/// An error with its location, for JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Located {
-    /// The code under which the error is explained, `OA102` for instance.
+    /// The error code, such as `OA102`.
     pub code: String,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// The path as the user gave it.
     pub file: String,
-    /// Line, counted from 1; absent if the error is no one place of the text.
+    /// Line, counted from 1; `None` for an error of the text as a whole.
     pub line: Option<usize>,
     /// Column in characters, counted from 1.
     pub column: Option<usize>,
-    /// A way out.
+    /// A remedy.
     pub help: Option<String>,
 }
 
 impl Diagnostics {
-    /// All errors as text without colours.
+    /// All errors as plain text.
     #[must_use]
     pub fn render_plain(&self, source: &Source) -> String {
         self.render(source, &Renderer::plain())
     }
 
-    /// All errors as text with a terminal's colours.
+    /// All errors as text with terminal colours.
     #[must_use]
     pub fn render_styled(&self, source: &Source) -> String {
         self.render(source, &Renderer::styled())
@@ -68,8 +68,9 @@ impl Diagnostics {
     }
 }
 
-/// A text with a mark in place of every character that has no glyph, or that turns the direction of what
-/// follows: a name of a file must not rearrange what is said about it.
+/// Replaces invisible characters, and those that change the writing direction, by a mark.
+///
+/// A file name must not rearrange a message.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let shown = |c: char| match c {
@@ -80,10 +81,10 @@ pub fn visible(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// The same error at more places than this is shown once, with the lines of the others.
+/// Number of locations above which an error is shown once, with the line numbers of the others.
 const REPEATED: usize = 3;
 
-/// The lines of errors: the first ones by number.
+/// Line numbers of errors: the first few.
 fn lines(others: &[&Diagnostic], source: &Source) -> String {
     let of = |d: &&Diagnostic| Some(source.position(d.span.as_ref()?).line.to_string());
     let numbers: Vec<String> = others.iter().filter_map(of).take(8).collect();

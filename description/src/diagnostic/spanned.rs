@@ -2,17 +2,17 @@
 
 use super::Span;
 
-/// A value and where the description gives it.
+/// A value and its location in the description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Its place; for a value that is left out, that of the table which could hold it.
+    /// Its location; for a missing value, that of the table to which it belongs.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// A value at a place.
+    /// A value at a location.
     #[must_use]
     pub const fn new(value: T, span: Span) -> Self {
         Self { value, span }

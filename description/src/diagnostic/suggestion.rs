@@ -1,14 +1,14 @@
-//! The name that was probably meant.
+//! Suggestions for misspelled names.
 
-/// Candidates that are compared, at most: a damaged file may miss thousands of names among thousands.
+/// Largest number of candidates: a damaged file may lack thousands of names among thousands.
 const MOST: usize = 500;
-/// Bytes of a name that is compared, at most.
+/// Largest length of a compared name, in bytes.
 const LONGEST: usize = 100;
 
-/// The candidate nearest to `name` by edit distance, if one is near enough to be meant.
+/// The candidate closest to `name` by edit distance, if it is close enough.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // A single letter is near to every other one, which means nothing.
+    // A single letter is close to every other one, which means nothing.
     let length = name.chars().count();
     let limit = (length / 3).max(1).min(length.saturating_sub(1));
     if name.len() > LONGEST {
@@ -20,11 +20,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|c| c.len() <= LONGEST)
         .map(|c| (distance(name, c), c))
         .filter(|(d, _)| *d <= limit);
-    // `min_by_key` keeps the first of equals, so the answer does not depend on chance.
+    // `min_by_key` keeps the first of equals, so the result is deterministic.
     near.min_by_key(|(d, _)| *d).map(|(_, candidate)| candidate)
 }
 
-/// "did you mean `alpha`?", if a candidate is near.
+/// "did you mean `alpha`?", if a candidate is close.
 #[must_use]
 pub fn did_you_mean<'a>(
     name: &str,
@@ -33,8 +33,7 @@ pub fn did_you_mean<'a>(
     nearest(name, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn one name into the other;
-/// upper and lower case count as equal.
+/// Edit distance with insertions, deletions, replacements and swaps of neighbours, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     strsim::osa_distance(&a.to_lowercase(), &b.to_lowercase())
 }

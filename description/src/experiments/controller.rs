@@ -1,4 +1,4 @@
-//! The table `[controller]`: the loops of the drives with which measured runs were made.
+//! The table `[controller]`: control loops of the drives during measured runs.
 
 use crate::diagnostic::Code;
 use crate::experiments::per_actuator::per_actuator;
@@ -7,16 +7,16 @@ use crate::robot::inventory::Inventory;
 use crate::robot::model::actuators;
 use crate::toml_text::reader::Item;
 
-/// Position and velocity loops, u = k_v (k_p (q_d - q) - q̇); lists have one value for each actuator.
+/// Position and velocity loops, u = k_v (k_p (q_d - q) - q̇); lists have one value per actuator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
-    /// Columns of the desired positions in a log, in the units of the measured ones.
+    /// Columns of the desired positions in a log, in units of the measured ones.
     pub reference: Vec<String>,
     /// k_p, 1/s.
     pub position_gain: Vec<f64>,
-    /// k_v, units of u in (m/s) or (rad/s).
+    /// k_v, units of u per m/s or rad/s.
     pub velocity_gain: Vec<f64>,
-    /// N or N m in a unit of u.
+    /// N or N m per unit of u.
     pub drive_gain: Vec<f64>,
     /// Largest |u|.
     pub limit: Option<Vec<f64>>,
@@ -28,7 +28,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Control
     let kinds = robot.actuator_kinds();
     let count = actuators(robot.legs).len();
     let list = |item: &Item<'_, '_>, dimension| per_actuator(item, &kinds, dimension, robot.scope);
-    // The unit of the drive's signal is its own affair.
+    // The unit of the drive's signal is arbitrary.
     let position_gain = table
         .require("position_gain", "position_gain = 100, in 1/s")
         .and_then(|item| list(&item, |_| Dimension::FREQUENCY));

@@ -1,4 +1,4 @@
-//! The table `[data]`: how a measured log maps on the robot.
+//! The table `[data]`: mapping of measured logs to the robot.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::experiments::experiment::position;
@@ -9,39 +9,41 @@ use crate::robot::inventory::Inventory;
 use crate::robot::model::{JointKind, actuators};
 use crate::toml_text::reader::{Item, Table};
 
-/// How a measured log maps on the robot.
+/// Mapping of measured logs to the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Data {
-    /// How samples follow one another.
+    /// Time of the samples.
     pub time: Clock,
     /// Columns of the actuators' positions.
     pub positions: Vec<String>,
     /// Columns of the actuators' torques, forces or drive signals.
     pub torques: Vec<String>,
-    /// Columns of the actuators' measured velocities, in the units of the positions and s; empty where there
-    /// are none.
+    /// Columns of the actuators' measured velocities, in units of the positions per s; empty if
+    /// there are none.
     pub velocities: Vec<String>,
-    /// Factors from columns to rad or m, one for each actuator.
+    /// Factors from columns to rad or m, one per actuator.
     pub position_scale: Vec<f64>,
-    /// What the positions show too much after that, rad or m, one for each actuator.
+    /// Offset of the scaled positions, subtracted, rad or m, one per actuator.
     pub position_offset: Vec<f64>,
-    /// Factors from columns to N m or N, one for each actuator.
+    /// Factors from columns to N m or N, one per actuator.
     pub torque_gain: Vec<Factor>,
-    /// The rate of uniform times at which the log is resampled, Hz; none if its time is uniform.
+    /// Rate of uniform times at which the log is resampled, Hz; `None` if its time is uniform.
     pub resample: Option<f64>,
-    /// Of a log of motors the matrix T with θ = T q, a row for each motor, q being the actuated joints; empty
-    /// where the log has the joints' own positions and torques.
+    /// Matrix T of a log of motors with θ = T q, one row per motor, where q are the actuated
+    /// joints.
+    ///
+    /// Empty if the log has the joints' own positions and torques.
     pub transmission: Vec<Vec<f64>>,
-    /// Place of the table.
+    /// Location of the table.
     pub span: Span,
 }
 
-/// How the samples of a log follow one another.
+/// Time of a log's samples.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Clock {
-    /// The column of the time, s.
+    /// Column of the time, s.
     Column(String),
-    /// No column: one sample after the other at this frequency, Hz.
+    /// No column: the samples have this frequency, Hz.
     Frequency(f64),
 }
 
@@ -113,7 +115,7 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     })
 }
 
-/// The column of the time, or the frequency of logs without one.
+/// The time column, or the frequency of logs without one.
 fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
     let Some(sampling) = table.get("sampling") else {
         let help =
@@ -133,7 +135,7 @@ fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
     Some(Clock::Frequency(frequency))
 }
 
-/// The rate of uniform times at which a log is resampled, if it is.
+/// The rate of uniform times at which a log is resampled, if any.
 fn resample(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Option<f64>> {
     let Some(item) = table.get("resample") else {
         return Some(None);
@@ -149,7 +151,7 @@ fn resample(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Option<f64>>
     Some(Some(item.positive(Dimension::FREQUENCY, robot.scope)?))
 }
 
-/// Factors that are numbers: of positions no log says how they are scaled.
+/// Factors as numbers: a log cannot contain the scale of positions.
 fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
     let number = |scale: &Factor| match scale {
         Factor::Value(value) => Some(*value),
@@ -163,12 +165,12 @@ fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
             None
         }
     };
-    // Every one is looked at, so that every wrong one is reported.
+    // All are read, so that each error is reported.
     let numbers: Vec<Option<f64>> = scales.iter().map(number).collect();
     numbers.into_iter().collect()
 }
 
-/// Offsets of the positions: one for all or a list, none where the key is left out.
+/// Offsets of the positions: one for all or a list; empty without the key.
 fn offsets(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
     let kinds = robot.actuator_kinds();
     let Some(item) = table.get("position_offset") else {
@@ -179,7 +181,7 @@ fn offsets(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
         false => vec![item.clone(); kinds.len()],
     };
     check_count(&item, list.len(), kinds.len())?;
-    // Every one is looked at, so that every wrong one is reported.
+    // All are read, so that each error is reported.
     let each = list.iter().zip(kinds);
     let offsets: Vec<Option<f64>> = each
         .map(|(item, kind)| Some(item.number(position(kind), robot.scope)?.value.value()))
@@ -199,8 +201,8 @@ pub(crate) fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) ->
     None
 }
 
-/// Gains of joints whose unit is that of the other kind of joint: newtons at a revolute one, newton metres at a
-/// prismatic one.
+/// Errors of gains with the unit of the other kind of joint: newtons for a revolute, newton metres
+/// for a prismatic joint.
 fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnostic> {
     let Some(item) = table.get("torque_gain") else {
         return Vec::new();
@@ -242,8 +244,9 @@ fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnost
     list.iter().zip(&kinds).filter_map(other).collect()
 }
 
-/// A bare identifier that is no constant is the name of a variable in the log. The unit of a log is
-/// its own affair, so a factor may have any dimension.
+/// Reads a factor: a bare identifier that is no constant is the name of a variable in the log.
+///
+/// The unit of a log is arbitrary, so a factor may have any dimension.
 fn factor(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Factor> {
     if let Some(text) = item.value.as_str() {
         let text = text.trim();

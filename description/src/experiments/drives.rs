@@ -6,24 +6,24 @@ use crate::robot::inventory::Inventory;
 use crate::robot::model::JointKind;
 use crate::toml_text::reader::Item;
 
-/// What the drives make of the controller's torques; lists have one value for each actuator.
+/// Deviations of the drives from the controller's torques; lists have one value per actuator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drives {
-    /// Torque at the actuator for each unit of torque in the log.
+    /// Torque at the actuator per unit of torque in the log.
     pub gain: Option<Vec<f64>>,
-    /// Time from command to drive, s.
+    /// Delay from command to drive, s.
     pub delay: f64,
     /// Bandwidth of the current loop, Hz; 0 is ideal.
     pub current_bandwidth: Option<Vec<f64>>,
     /// Amplitude of the cogging torque, N m or N.
     pub cogging: Option<Vec<f64>>,
-    /// Periods of the cogging in a turn, or in a metre.
+    /// Periods of the cogging per revolution or metre.
     pub cogging_periods: Option<Vec<f64>>,
     /// Natural frequency of the flexible drive, Hz; 0 is rigid.
     pub flexible_frequency: Option<Vec<f64>>,
     /// Damping factor of that mode.
     pub flexible_damping: f64,
-    /// Stiffness between encoder and joint, N m/rad or N/m; 0 where the encoder is at the joint.
+    /// Stiffness between encoder and joint, N m/rad or N/m; 0 if the encoder is at the joint.
     pub flexible_stiffness: Option<Vec<f64>>,
 }
 

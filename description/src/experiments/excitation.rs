@@ -1,4 +1,4 @@
-//! The table `[excitation]`: what a search of exciting trajectories keeps to.
+//! The table `[excitation]`: limits of the search for exciting trajectories.
 
 use crate::diagnostic::{Code, Span};
 use crate::experiments::experiment;
@@ -8,13 +8,13 @@ use crate::robot::inventory::Inventory;
 use crate::robot::model::JointKind;
 use crate::toml_text::reader::Item;
 
-/// Most harmonics of a trajectory.
+/// Largest number of harmonics of a trajectory.
 const HARMONICS: u64 = 30;
 
-/// Most runs that are searched at once.
+/// Largest number of runs in one search.
 const RUNS: u64 = 20;
 
-/// Limits of exciting trajectories, and of what they are made. What is left out follows from the rest of the
+/// Limits and components of exciting trajectories; missing values follow from the rest of the
 /// description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excitation {
@@ -24,7 +24,7 @@ pub struct Excitation {
     pub harmonics: Option<usize>,
     /// Number of runs, from 1.
     pub runs: Option<usize>,
-    /// Largest displacement of each of the r coordinates from home, m or rad; 0 holds a coordinate.
+    /// Largest displacement of each of the r coordinates from home, m or rad; 0 fixes a coordinate.
     pub position: Option<Vec<f64>>,
     /// Largest displacement of each actuator from home, m or rad.
     pub travel: Option<Vec<f64>>,
@@ -34,7 +34,7 @@ pub struct Excitation {
     pub acceleration: Option<Vec<f64>>,
     /// Largest condition number of J_p^inv, or of its part J_a of the kept actuators, at least 1.
     pub condition: Option<f64>,
-    /// Place of the table.
+    /// Location of the table.
     pub span: Span,
 }
 
@@ -91,7 +91,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
     Some(excitation)
 }
 
-/// Reports limits that leave no motion.
+/// Reports limits that allow no motion.
 fn moves(item: &Item<'_, '_>, moves: bool) -> bool {
     if !moves {
         let error = item.error(

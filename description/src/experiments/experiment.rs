@@ -17,13 +17,13 @@ use overact_core::StandardParameter;
 pub struct Experiment {
     /// Sampling frequency, Hz.
     pub sampling: f64,
-    /// Duration of the runs that give none of their own, s.
+    /// Duration of runs without their own, s.
     pub duration: f64,
     /// Natural frequency of the controlled robot, Hz.
     pub bandwidth: f64,
     /// Damping factor.
     pub damping: f64,
-    /// Cutoff of the low-pass on the controller's derivative, Hz.
+    /// Cutoff of the low-pass filter on the controller's derivative, Hz.
     pub derivative_cutoff: f64,
     /// Whether the controller adds the inverse dynamics of the desired motion.
     pub feed_forward: bool,
@@ -31,13 +31,13 @@ pub struct Experiment {
     pub project_internal: bool,
     /// Encoder resolution of each actuator, rad or m; 0 is ideal.
     pub encoder: Vec<f64>,
-    /// Time by which the position sensors are late, s.
+    /// Delay of the position sensors, s.
     pub encoder_delay: f64,
     /// Standard deviation of each actuator's torque measurement, N m or N.
     pub torque_noise: Vec<f64>,
     /// Largest absolute torque of each actuator, N m or N.
     pub torque_limit: Option<Vec<f64>>,
-    /// What the drives make of the controller's torques.
+    /// Deviations of the drives from the controller's torques.
     pub drives: Drives,
     /// Seed of all noise.
     pub seed: u64,
@@ -45,18 +45,18 @@ pub struct Experiment {
     pub parameters: Vec<TrueParameter>,
     /// The runs in order.
     pub runs: Vec<Run>,
-    /// Place of the table.
+    /// Location of the table.
     pub span: Span,
 }
 
 /// The true value of a standard parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrueParameter {
-    /// Full name, `zz_1_leg1` for instance.
+    /// Full name, such as `zz_1_leg1`.
     pub name: Spanned<String>,
-    /// Whose parameter it is.
+    /// Body or joint of the parameter.
     pub body: Body,
-    /// Which parameter of the body it is.
+    /// The parameter of the body.
     pub symbol: StandardParameter,
     /// Value in SI units.
     pub value: f64,
@@ -69,10 +69,9 @@ pub struct Run {
     pub name: Spanned<String>,
     /// Whether the payload is on the platform.
     pub payload: bool,
-    /// Name of the payload, where there are several.
+    /// Name of the payload, if there are several.
     pub payload_name: Option<String>,
-    /// Whether the run is held out: predictions are compared with it, and no parameter is estimated
-    /// from it.
+    /// Whether the run is validation data: it is only predicted, and not used for estimation.
     pub validation: bool,
     /// Duration, s; that of the experiment if absent.
     pub duration: Option<f64>,
@@ -85,7 +84,7 @@ pub struct Run {
 /// A term amplitude sin(2π harmonic fundamental t + phase) of one coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term {
-    /// Name of the coordinate: of the platform, or of a joint of a robot without platform.
+    /// Name of the coordinate: of the platform, or a joint of a robot without a platform.
     pub coordinate: Spanned<String>,
     /// Its index among the r coordinates.
     pub index: usize,
@@ -151,7 +150,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Experim
     Some(experiment)
 }
 
-/// Of an actuator's position.
+/// Dimension of an actuator's position.
 pub(crate) fn position(kind: JointKind) -> Dimension {
     joint::dimension(kind).unwrap_or(Dimension::NONE)
 }
@@ -218,7 +217,7 @@ fn runs(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<Run> {
     runs
 }
 
-/// Most characters of a run's name, which stands in names of files.
+/// Largest number of characters of a run's name, which occurs in file names.
 const NAME: usize = 60;
 
 fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {

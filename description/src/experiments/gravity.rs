@@ -1,13 +1,13 @@
-//! The switch that asks for the direction of gravity.
+//! The switch for the identification of the direction of gravity.
 
 use crate::diagnostic::Code;
 use crate::toml_text::reader::Item;
 use overact_exact::Number;
 
-/// Why gains of drives and the direction of gravity are not identified together.
+/// Why gains and the direction of gravity are not identified together.
 pub const GAINS_AND_GRAVITY: &str = "gains of drives and the direction of gravity are not identified together: what a tilt does to a torque, a gain does, too";
 
-/// Reads `gravity_direction`, which needs a gravity that has a direction.
+/// Reads `gravity_direction`, which requires nonzero gravity.
 pub(crate) fn direction(item: &Item<'_, '_>, gains: bool, gravity: &[Number; 3]) -> bool {
     if item.boolean() != Some(true) {
         return false;

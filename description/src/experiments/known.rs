@@ -1,5 +1,5 @@
-//! What the identification of drive gains needs: values that are known exactly, drives with a signal each, and
-//! payloads of robots without platform.
+//! Requirements of the identification of drive gains: known values, drives with one signal each,
+//! and payloads of robots without a platform.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::experiments::experiment::parameters;
@@ -8,10 +8,10 @@ use crate::robot::model::{JointKind, Leg};
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
 
-/// Why gains of joints do not exist where motors turn several joints.
+/// Why joints have no gains if motors drive several joints.
 pub const COUPLED_MOTORS: &str = "gains are those of drives that turn one joint each, but motors of this robot turn several: a joint's torque has no gain of its own";
 
-/// Why gains are not identified where torques of joints are known.
+/// Why gains are not identified with known joint torques.
 pub const KNOWN_TORQUES: &str = "gains are not identified where torques of joints are known: a gain scales what is measured, not what is known";
 
 impl Leg {
@@ -21,7 +21,7 @@ impl Leg {
         self.joints.iter().any(|joint| joint.known.is_some())
     }
 
-    /// Whether a motor turns a combination of several joints, so that the torque of a joint is no multiple of
+    /// Whether a motor drives a combination of joints, so that joint torques are not multiples of
     /// one motor's signal.
     #[must_use]
     pub fn has_coupled_motors(&self) -> bool {
@@ -29,7 +29,7 @@ impl Leg {
         joints.any(|joint| joint.motor.is_some() && joint.variable.len() > 1)
     }
 
-    /// Whether a body of the leg is the payload of a robot without platform: a fixed joint with the name
+    /// Whether a body of the leg is the payload of a robot without a platform: a fixed joint named
     /// `payload`.
     #[must_use]
     pub fn carries_payload(&self) -> bool {
@@ -38,8 +38,9 @@ impl Leg {
     }
 }
 
-/// Reads `[identification.known]`: values by name, SI units. Friction is nothing that a scale or a drawing
-/// tells.
+/// Reads `[identification.known]`: values by name, SI units.
+///
+/// Friction is excluded, since neither scales nor drawings give it.
 pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f64)> {
     use StandardParameter as P;
     let mut known = Vec::new();
@@ -69,7 +70,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
     known
 }
 
-/// Reads the switch `gains`, which needs a known value and drives of one joint each.
+/// Reads the switch `gains`, which requires a known value and drives of one joint each.
 pub(crate) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Inventory<'_>) -> bool {
     if item.boolean() != Some(true) {
         return false;

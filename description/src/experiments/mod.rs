@@ -1,4 +1,4 @@
-//! What a description says besides the robot: experiments, logs, priors and settings.
+//! Parts of a description other than the robot: experiments, logs, priors and settings.
 
 pub(crate) mod controller;
 pub(crate) mod data;

@@ -1,4 +1,4 @@
-//! Names of payloads, of which different runs carry different ones.
+//! Names of payloads, which may differ between runs.
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::robot::inventory::Inventory;
@@ -6,10 +6,10 @@ use crate::robot::model::{Leg, Spanned};
 use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::is_word;
 
-/// Most payloads of a robot.
+/// Largest number of payloads of a robot.
 const MOST: usize = 100;
 
-/// Reads the key `payloads`: different words, of a robot that may carry a payload.
+/// Reads the key `payloads`: distinct names, for a robot that may carry a payload.
 pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<String>> {
     let Some(item) = table.get("payloads") else {
         return Vec::new();
@@ -55,8 +55,10 @@ pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
     names
 }
 
-/// Whether a robot may carry a payload: identification tells it from other bodies by its parameters' names, which
-/// have the name of their leg behind them where there are several.
+/// Whether a robot may carry a payload.
+///
+/// Identification recognises payloads by parameter names, which contain the leg's name if there are
+/// several legs.
 pub(crate) fn has_payload(robot: &Inventory<'_>) -> bool {
     match robot.platform {
         Some(platform) => platform.payload.is_some(),
@@ -75,7 +77,7 @@ pub(crate) fn help(robot: &Inventory<'_>) -> &'static str {
     }
 }
 
-/// What a run says of its payload: whether there is one, and its name where payloads have names.
+/// The payload of a run: whether there is one, and its name if payloads have names.
 pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Option<String>) {
     let known = || robot.payloads.iter().map(|one| one.value.as_str());
     let list = || known().collect::<Vec<_>>().join(", ");

@@ -1,4 +1,4 @@
-//! Lists with a value for each actuator or coordinate.
+//! Lists with one value per actuator or coordinate.
 
 use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
@@ -8,12 +8,12 @@ use crate::toml_text::reader::Item;
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
 
-/// Torque or force of an actuator.
+/// Dimension of an actuator's torque or force.
 pub(crate) fn effort(kind: JointKind) -> Dimension {
     dimension(StandardParameter::Fs, kind)
 }
 
-/// One value for all actuators, or a list with one for each.
+/// One value for all actuators, or a list with one per actuator.
 pub(crate) fn per_actuator(
     item: &Item<'_, '_>,
     kinds: &[JointKind],
@@ -24,7 +24,7 @@ pub(crate) fn per_actuator(
     one_or_each(item, &dimensions, "actuator", scope)
 }
 
-/// One value for all of something, or a list with one for each.
+/// One value for all, or a list with one for each.
 pub(crate) fn one_or_each(
     item: &Item<'_, '_>,
     dimensions: &[Dimension],

@@ -1,4 +1,4 @@
-//! The table `[prior]`: what is believed of the parameters before data speak.
+//! The table `[prior]`: prior knowledge of the parameters.
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::experiments::experiment::{TrueParameter, parameters};
@@ -6,7 +6,7 @@ use crate::robot::inventory::Inventory;
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
 
-/// What is believed of the parameters before data speak.
+/// Prior knowledge of the parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Prior {
     /// Values by name, SI units.
@@ -28,7 +28,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Prior> 
     })
 }
 
-/// Reads `[prior.values]`: what can't be negative of any body or drive is not.
+/// Reads `[prior.values]`; parameters that cannot be negative are checked.
 fn values(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
     use StandardParameter as P;
     let all = parameters(item, robot);

@@ -10,7 +10,7 @@ use crate::robot::model::{Spanned, actuators};
 use crate::toml_text::reader::{Item, Table};
 use overact_exact::Number;
 
-/// How the variance of the residual is normalised.
+/// Normalisation of the residual's variance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Normalisation {
     /// By the number of equations minus one, about the residual's mean.
@@ -20,17 +20,17 @@ pub enum Normalisation {
     MinusParameters,
 }
 
-/// How friction is modelled.
+/// Friction model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Friction {
     /// The same coefficients in both directions, and an offset.
     #[default]
     Symmetric,
-    /// Coefficients of its own for each direction.
+    /// Separate coefficients for each direction.
     Asymmetric,
 }
 
-/// What Coulomb friction takes for the sign of a velocity that reverses between two samples.
+/// Sign of a velocity in Coulomb friction if it reverses between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Reversals {
     /// The mean of the sign over the sampling interval.
@@ -40,13 +40,14 @@ pub enum Reversals {
     Sampled,
 }
 
-/// Where the instruments come from, by which errors of the positions are found and cured.
+/// Origin of the instrumental variables, by which errors of the positions are detected and
+/// corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Instruments {
-    /// The other periods of a periodic motion.
+    /// Other periods of a periodic motion.
     #[default]
     Periods,
-    /// The motion of the simulated robot.
+    /// Motion of the simulated robot.
     Simulated,
     /// No instruments.
     None,
@@ -55,46 +56,51 @@ pub enum Instruments {
 /// Settings of the identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
-    /// Order of the Butterworth low-pass on the positions.
+    /// Order of the Butterworth low-pass filter on the positions.
     pub filter_order: usize,
     /// Its cutoff, Hz; chosen from the sampling frequency if absent.
     pub filter_cutoff: Option<f64>,
-    /// Order of the error of differences, 2 or 4; the usual one if absent.
+    /// Order of the finite differences' error, 2 or 4; `None` for the default.
     pub difference_order: Option<usize>,
-    /// One sample in so many is kept; chosen from the sampling frequency if absent.
+    /// Decimation factor: one sample in this many is kept; chosen from the sampling frequency if
+    /// absent.
     pub decimation: Option<usize>,
-    /// Samples dropped at the start of each run after differentiation; where neither end has a
-    /// number, as many as the filter's transient lasts, else 0.
+    /// Samples dropped at the start of each run after differentiation.
+    ///
+    /// If neither end has a number, it is the length of the filter's transient; otherwise the
+    /// default is 0.
     pub skip_start: Option<usize>,
-    /// Samples dropped at the end of each run, likewise.
+    /// Samples dropped at the end of each run, with the same default.
     pub skip_end: Option<usize>,
     /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero.
     pub velocity_dead_band: f64,
-    /// Velocities of the actuators' joints (rad/s or m/s) below which their equations are left out; none
-    /// where it is empty.
+    /// Velocities of the actuators' joints (rad/s or m/s) below which their equations are left out;
+    /// may be empty.
     pub standstill_velocity: Vec<f64>,
-    /// Whether the torques pass the low-pass of the positions, too.
+    /// Whether the torques are filtered like the positions.
     pub filter_torques: bool,
-    /// Whether both sides of the equations pass it.
+    /// Whether both sides of the equations are filtered so.
     pub filter_equations: bool,
-    /// So many decimated samples of a held-out run, from the first on, count in its errors; all if absent.
+    /// Number of decimated samples, from the first on, of validation data that count in its errors;
+    /// all if absent.
     pub validation_samples: Option<usize>,
-    /// The sign of velocities around reversals.
+    /// Sign of velocities around reversals.
     pub reversals: Reversals,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
     pub r_sigma: f64,
-    /// Kept actuators of case 2, indices among all actuators; if absent, the first r that determine
-    /// the platform's motion.
+    /// Kept actuators of the actuator projection, indices among all actuators.
+    ///
+    /// If absent, the first r that determine the platform's motion.
     pub kept_actuators: Option<Vec<usize>>,
-    /// How the variance of the residual is normalised.
+    /// Normalisation of the residual's variance.
     pub normalisation: Normalisation,
-    /// How friction is modelled.
+    /// Friction model.
     pub friction: Friction,
     /// Weighted least squares (48); ordinary ones otherwise.
     pub weighted: bool,
     /// Whether the base parameters are reduced to essential ones.
     pub essential: bool,
-    /// Where the instruments come from.
+    /// Origin of the instrumental variables.
     pub instruments: Instruments,
     /// Period of the motion, s; found from each run if absent.
     pub period: Option<f64>,
@@ -102,7 +108,7 @@ pub struct Identification {
     pub gains: bool,
     /// Whether the direction of gravity is identified together with the parameters.
     pub gravity_direction: bool,
-    /// Standard parameters that are known exactly by name, SI units.
+    /// Standard parameters that are known exactly, by name, SI units.
     pub known: Vec<(String, f64)>,
 }
 
@@ -171,7 +177,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     settings.skip_start = size("skip_start", 0);
     settings.skip_end = size("skip_end", 0);
     if let Some(item) = table.get("velocity_dead_band") {
-        // The joints of a robot may be angles and lengths, so the number is in SI units of each.
+        // Joints may be revolute and prismatic, so the number is in the SI unit of each.
         let band = item.not_negative(Dimension::NONE, scope);
         settings.velocity_dead_band = band.unwrap_or(settings.velocity_dead_band);
     }
@@ -244,7 +250,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         .is_some_and(|item| known::gains(&item, &settings.known, robot));
 }
 
-/// Velocities at which joints stand still: one for all actuators or a list.
+/// Velocities of standstill: one for all actuators or a list.
 fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
     let kinds = robot.actuator_kinds();
     let list = match item.value.is_array() {
@@ -256,7 +262,7 @@ fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
         Dimension::LENGTH => Dimension::SPEED,
         _ => Dimension::ANGULAR_SPEED,
     };
-    // Every one is looked at, so that every wrong one is reported.
+    // All are read, so that each error is reported.
     let each = list.iter().zip(kinds);
     let limits: Vec<Option<f64>> = each
         .map(|(item, kind)| item.not_negative(dimension(kind), robot.scope))
@@ -264,7 +270,7 @@ fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
     limits.into_iter().collect()
 }
 
-/// Number of kept actuators: r, or all of a robot that has fewer.
+/// Number of kept actuators: r, or all of a robot with fewer.
 fn kept_count(robot: &Inventory<'_>) -> usize {
     robot.coordinates().len().min(actuators(robot.legs).len())
 }
@@ -272,7 +278,7 @@ fn kept_count(robot: &Inventory<'_>) -> usize {
 fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usize>> {
     let names = robot.actuator_names();
     let given = item.strings()?;
-    // Of a robot without actuators that alone is said.
+    // For a robot without actuators only their absence is reported.
     names.usual().next()?;
     let mut kept: Vec<usize> = Vec::new();
     for name in &given {

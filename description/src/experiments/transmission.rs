@@ -1,5 +1,7 @@
-//! The transmission from joints to motors: of a leg's motors the matrix T with θ = T q, where θ are the
-//! rotors' positions and q those of the actuated joints. Torques go the other way, τ = Tᵀ τ_θ.
+//! Transmission from joints to motors: the matrix T with θ = T q.
+//!
+//! Here θ are the rotors' positions and q those of the actuated joints. Torques are transformed by
+//! τ = Tᵀ τ_θ.
 
 use crate::diagnostic::Code;
 use crate::robot::inventory::Inventory;
@@ -7,10 +9,10 @@ use crate::robot::model::actuators;
 use crate::toml_text::reader::Item;
 use nalgebra::DMatrix;
 
-/// Smallest singular value of T, relative to its largest, of motors that determine the joints.
+/// Smallest singular value of T, relative to its largest, for motors that determine the joints.
 const SINGULAR: f64 = 1e-9;
 
-/// The rows of T, one for each motor; `None` where the motors do not determine the actuated joints.
+/// The rows of T, one per motor; `None` if the motors do not determine the actuated joints.
 pub(crate) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<Vec<f64>>> {
     let actuated = actuators(robot.legs);
     let legs = robot.legs.iter().enumerate();
@@ -30,7 +32,7 @@ pub(crate) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<V
         .collect();
     let help = "describe each motor as [[leg.NAME.motor]] with turns = \"q1\" and its gear's ratio";
     if rows.len() != actuated.len() {
-        // After another error nobody knows how many motors and joints were meant.
+        // After another error the intended motors and joints are unknown.
         if !item.context.is_clean() {
             return None;
         }

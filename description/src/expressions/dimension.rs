@@ -32,7 +32,7 @@ impl Dimension {
     pub(crate) const LINEAR_STIFFNESS: Self = Self([0, 1, -2, 0, 0]);
     pub(crate) const ANGULAR_STIFFNESS: Self = Self([2, 1, -2, 0, -1]);
 
-    /// What a quantity of this dimension is called, with its article, and its unit.
+    /// Names of dimensions with their article, and units.
     const NAMES: [(Self, &'static str, &'static str); 20] = [
         (Self::LENGTH, "a length", "m"),
         (Self::MASS, "a mass", "kg"),
@@ -78,7 +78,7 @@ impl Dimension {
         Some(Self(product))
     }
 
-    /// Dimension of a square root; `None` if it has broken exponents.
+    /// Dimension of a square root; `None` for fractional exponents.
     pub(crate) fn root(self) -> Option<Self> {
         self.0
             .iter()
@@ -86,9 +86,10 @@ impl Dimension {
             .then(|| Self(self.0.map(|e| e / 2)))
     }
 
-    /// Whether a quantity of this dimension may stand where one of the `expected` dimension is due.
-    /// A plain number may stand for everything. The radian counts only where there is no mass:
-    /// a torque per angular speed is N m s as well as N m s/rad.
+    /// Whether a quantity of this dimension is accepted for an `expected` dimension.
+    ///
+    /// A plain number is always accepted. The radian counts only in dimensions without mass: a
+    /// torque per angular speed is N m s or N m s/rad.
     pub(crate) fn fits(self, expected: Self) -> bool {
         let [m, kg, s, a, _] = expected.0;
         let without_angle = [m, kg, s, a] == [self.0[0], self.0[1], self.0[2], self.0[3]];
@@ -102,7 +103,7 @@ impl Dimension {
             .map(|(_, name, unit)| (*name, *unit))
     }
 
-    /// The unit, in SI; empty for a plain number.
+    /// The SI unit; empty for a plain number.
     pub(crate) fn unit(self) -> String {
         if let Some((_, unit)) = self.known() {
             return unit.to_owned();

@@ -1,5 +1,4 @@
-//! Expressions: numbers with units, names, arithmetic and a few functions, evaluated as they are
-//! read.
+//! Expressions: numbers with units, names, arithmetic and a few functions, evaluated while parsing.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -21,31 +20,31 @@ use crate::expressions::value::{Fault, Value};
 use overact_exact::{Angle, Number, Ratio};
 use std::marker::PhantomData;
 
-/// How deep parentheses and signs may nest.
+/// Largest nesting depth of parentheses and signs.
 const DEPTH: usize = 64;
 
-/// Names that are listed where an unknown one stands, at most.
+/// Largest number of known names in the error of an unknown one.
 const KNOWN: usize = 50;
 
-/// What a name stands for.
+/// Meaning of a name.
 pub(crate) enum Meaning {
     /// A value.
     Value(Value),
-    /// A value that an error, already reported, keeps from being known.
+    /// A value that is unknown because of an error, which is already reported.
     Poisoned,
-    /// Nothing.
+    /// An unknown name.
     Unknown,
 }
 
 /// The names that an expression may use.
 pub(crate) trait Names {
-    /// What a name stands for.
+    /// The meaning of a name.
     fn meaning(&self, name: &str) -> Meaning;
     /// All names, for suggestions.
     fn all(&self) -> Vec<String>;
 }
 
-/// Why an expression has no value.
+/// Reason why an expression has no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Failure {
     /// A fault at bytes of the expression.
@@ -54,21 +53,21 @@ pub(crate) enum Failure {
     Consequence,
 }
 
-/// What expressions are evaluated to.
+/// Result type of expressions.
 pub(crate) trait Quantity: Sized + Clone {
     /// A constant or a name's value.
     fn from_value(value: Value) -> Self;
     /// Sum.
     fn plus(self, other: Self) -> Result<Self, Fault>;
-    /// Opposite.
+    /// Negative.
     fn negative(self) -> Self;
     /// Product.
     fn times(self, other: Self) -> Result<Self, Fault>;
-    /// One divided by it.
+    /// Reciprocal.
     fn reciprocal(self) -> Result<Self, Fault>;
     /// A power with an integer exponent.
     fn power(self, exponent: &Self) -> Result<Self, Fault>;
-    /// The value of a function; the number of arguments is right.
+    /// Value of a function; the number of arguments is already checked.
     fn apply(name: &str, arguments: Vec<Self>) -> Result<Self, Fault>;
 }
 
@@ -138,12 +137,12 @@ pub(crate) fn evaluate<Q: Quantity>(text: &str, names: &dyn Names) -> Outcome<Q>
     }
 }
 
-/// A number of a TOML file or an expression, without sign; a decimal is exact.
+/// An unsigned number of a TOML file or an expression; decimals are exact.
 pub(crate) fn number(text: &str) -> Option<Number> {
     if let Some(ratio) = Ratio::decimal(text) {
         return Some(Number::ratio(ratio));
     }
-    // More digits than fit a fraction: the float is as good as the author's intent.
+    // More digits than a fraction can hold: the float is as good as the author's intent.
     let value: f64 = text.replace('_', "").parse().ok()?;
     value.is_finite().then(|| Number::float(value))
 }
@@ -177,14 +176,14 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         token
     }
 
-    /// Takes the next token if it is this symbol.
+    /// Consumes the next token if it is this symbol.
     fn take(&mut self, symbol: char) -> Option<&'r Token<'t>> {
         let token = self.peek().filter(|t| t.is(symbol))?;
         self.at += 1;
         Some(token)
     }
 
-    /// From the start of a token to the end of the last one read.
+    /// Span from the start of a token to the end of the last one read.
     fn since(&self, start: usize) -> Span {
         let last = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
         start..last.map_or(self.end, |t| t.span.end)
@@ -194,7 +193,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         self.peek().map_or(self.end, |t| t.span.start)
     }
 
-    /// Turns a fault into one of everything read since `start`.
+    /// Locates a fault at everything read since `start`.
     fn located(&self, start: usize, result: Result<Q, Fault>) -> Outcome<Q> {
         result.map_err(|fault| Failure::Fault(fault, self.since(start)))
     }
@@ -251,7 +250,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         self.located(start, base.power(&exponent))
     }
 
-    /// Reads one level deeper, unless that is too deep.
+    /// Reads one nesting level deeper, unless that is too deep.
     fn nested(&mut self, read: fn(&mut Self) -> Outcome<Q>) -> Outcome<Q> {
         if self.depth >= DEPTH {
             let start = self.start();
@@ -308,7 +307,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         }
     }
 
-    /// A number and the units that follow it.
+    /// A number and its units.
     fn quantity(&mut self, token: &Token<'_>) -> Outcome<Q> {
         let start = token.span.start;
         let number = number(token.text);
@@ -323,7 +322,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         Ok(value)
     }
 
-    /// The next unit of a product of units, if the next tokens are one.
+    /// The next unit of a product of units, if there is one.
     fn unit_factor(&mut self, first: bool) -> Result<Option<Q>, Failure> {
         let before = self.at;
         let mut divide = false;

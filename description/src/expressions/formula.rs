@@ -1,4 +1,4 @@
-//! Formulas of a joint's position, and the spring that one describes.
+//! Formulas of a joint's position, and springs.
 
 use crate::expressions::dimension::Dimension;
 use overact_exact::{Angle, Number, Ratio};
@@ -17,14 +17,14 @@ pub enum Formula {
     Cosine {
         /// The angle at q = 0.
         offset: Angle,
-        /// Turns for each turn of q.
+        /// Cycles per cycle of q.
         factor: Ratio,
     },
     /// sin(offset + factor q).
     Sine {
         /// The angle at q = 0.
         offset: Angle,
-        /// Turns for each turn of q.
+        /// Cycles per cycle of q.
         factor: Ratio,
     },
     /// A sum.
@@ -47,7 +47,7 @@ impl Formula {
         }
     }
 
-    /// Number of its parts.
+    /// Number of nodes of the formula.
     pub(crate) fn size(&self) -> usize {
         match self {
             Self::Linear { .. } | Self::Cosine { .. } | Self::Sine { .. } => 1,
@@ -74,10 +74,10 @@ impl Formula {
 /// The spring of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spring {
-    /// What a unit of its coefficient adds to the joint's torque.
+    /// Torque of the joint per unit of the coefficient.
     pub formula: Formula,
     /// SI unit of the coefficient.
     pub unit: String,
-    /// Its dimension.
+    /// Dimension of the coefficient.
     pub(crate) dimension: Dimension,
 }

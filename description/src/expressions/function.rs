@@ -19,7 +19,7 @@ pub(crate) fn is_trigonometric(name: &str) -> bool {
     ["sin", "cos", "tan"].contains(&name)
 }
 
-/// The value of a function; the number of arguments is right.
+/// Value of a function; the number of arguments is already checked.
 pub(crate) fn apply(name: &str, arguments: Vec<Value>) -> Result<Value, Fault> {
     let mut arguments = arguments.into_iter();
     let (Some(first), second) = (arguments.next(), arguments.next()) else {
@@ -70,7 +70,7 @@ fn arc_tangent(y: &Value, x: &Value) -> Result<Value, Fault> {
         return Err(Fault::new("`atan2` of two zeros has no value"));
     }
     let radians = y.value().atan2(x.value());
-    // A decimal angle in degrees is recognised exactly: the point must lie on its ray.
+    // A decimal angle in degrees is recognised exactly: the point has to lie on its ray.
     let degrees = format!("{:.6}", radians.to_degrees());
     let candidate = Ratio::decimal(&degrees)
         .and_then(Angle::degrees)

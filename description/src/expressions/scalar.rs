@@ -1,15 +1,15 @@
-//! Exact constants, with multiples of π kept apart.
+//! Exact constants, with separate multiples of π.
 
 use overact_exact::{Angle, Number, Ratio};
 use std::f64::consts::PI;
 
-/// A constant. Multiples of π are kept apart from other numbers, so that 90 deg and pi/2 are the
-/// same exact angle.
+/// A constant. Multiples of π are separate from other numbers, so that 90 deg and pi/2 are the same
+/// exact angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Scalar {
     /// A number without a multiple of π.
     Number(Number),
-    /// π times a fraction, which is not zero, plus a fraction.
+    /// π times a nonzero fraction, plus a fraction.
     Angle(Angle),
 }
 
@@ -27,7 +27,7 @@ impl Scalar {
         }
     }
 
-    /// The scalar as a number, with π as a number like any other.
+    /// The scalar as a number, including π.
     pub(crate) fn to_number(self) -> Number {
         match self {
             Self::Number(number) => number,
@@ -38,8 +38,8 @@ impl Scalar {
         }
     }
 
-    /// The scalar as an angle in radians; a number that is no fraction becomes the fraction which
-    /// its float is. `None` on overflow.
+    /// The scalar as an angle in radians; irrational numbers become the fraction of their float.
+    /// `None` on overflow.
     pub(crate) fn to_angle(self) -> Option<Angle> {
         match self {
             Self::Angle(angle) => Some(angle),
@@ -64,7 +64,8 @@ impl Scalar {
         }
     }
 
-    /// The scalar as a fraction; one that is none becomes the fraction which its float is. `None` on overflow.
+    /// The scalar as a fraction; irrational numbers become the fraction of their float. `None` on
+    /// overflow.
     pub(crate) fn to_ratio(self) -> Option<Ratio> {
         self.as_ratio().or_else(|| ratio_of_float(self.value()))
     }
@@ -102,7 +103,7 @@ impl Scalar {
         )
     }
 
-    /// The reciprocal of a scalar that is not zero.
+    /// The reciprocal of a nonzero scalar.
     pub(crate) fn reciprocal(self) -> Self {
         Self::Number(Number::ONE / self.to_number())
     }
@@ -115,9 +116,9 @@ impl Scalar {
     }
 }
 
-/// The fraction that a float is; `None` for one beyond 128 bits.
+/// The exact fraction of a float; `None` if it exceeds 128 bits.
 fn ratio_of_float(value: f64) -> Option<Ratio> {
-    // 2^-80 is far below the rounding of any angle that matters.
+    // 2^-80 is far below the rounding of any relevant angle.
     const SHIFT: i32 = 80;
     let scaled = value * 2_f64.powi(SHIFT);
     let fits = scaled.is_finite() && scaled.abs() < 2_f64.powi(126);

@@ -11,7 +11,7 @@ pub(crate) enum Kind {
     Symbol(char),
 }
 
-/// A token and the bytes of the expression that it takes.
+/// A token and its bytes in the expression.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Token<'t> {
     pub(crate) kind: Kind,
@@ -54,7 +54,7 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token<'_>>, (Fault, Span)> {
     Ok(list)
 }
 
-/// What is to be written instead of a character that looks like mathematics and is none here.
+/// Replacement for a character that looks like mathematics but is not allowed.
 fn substitute(c: char) -> &'static str {
     match c {
         '°' => "write degrees as `deg`, for instance \"90 deg\"",

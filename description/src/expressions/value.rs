@@ -1,11 +1,11 @@
-//! Exact values of expressions: a scalar, its dimension and, in a joint's expression, a linear
-//! combination of joint variables.
+//! Exact values of expressions: a scalar, its dimension and, for joints, a linear combination of
+//! joint variables.
 
 use crate::expressions::dimension::Dimension;
 use crate::expressions::scalar::Scalar;
 use overact_exact::{Number, Ratio};
 
-/// Why an operation has no result: what is wrong, and a way out.
+/// Reason why an operation has no result, and a remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Fault {
     pub(crate) message: String,
@@ -34,10 +34,11 @@ impl Fault {
 
 const TOO_LARGE: &str = "the value is too large";
 
-/// Largest magnitude of a value, SI: products of a few lengths, masses and accelerations stay numbers.
+/// Largest magnitude of a value, SI: products of a few lengths, masses and accelerations stay
+/// finite.
 const LARGEST: f64 = 1e30;
 
-/// Smallest magnitude of a value that is not zero, SI: so do their reciprocals.
+/// Smallest magnitude of a nonzero value, SI: reciprocals stay finite, too.
 const SMALLEST: f64 = 1e-50;
 
 /// The value of an expression.
@@ -47,7 +48,7 @@ pub(crate) struct Value {
     pub(crate) scalar: Scalar,
     /// Dimension of the whole.
     pub(crate) dimension: Dimension,
-    /// Joint variables with their factors, sorted by joint, no factor zero.
+    /// Joint variables with their nonzero factors, sorted by joint.
     pub(crate) terms: Vec<(usize, Ratio)>,
 }
 
@@ -74,9 +75,9 @@ impl Value {
         }
     }
 
-    /// The value itself, if nothing in it is beyond the range of numbers.
+    /// The value, if all of its numbers are in range.
     pub(crate) fn checked(self) -> Result<Self, Fault> {
-        // The most negative integer has no opposite, so it counts as too large.
+        // The most negative integer has no negative, so it counts as too large.
         let in_range = |r: Ratio| r.numerator() != i128::MIN;
         let exact = match self.scalar {
             Scalar::Number(number) => number.as_ratio().is_none_or(in_range),
@@ -91,7 +92,7 @@ impl Value {
         }
     }
 
-    /// The value itself, if it is of a magnitude that a robot may have.
+    /// The value, if its magnitude is possible for a robot.
     pub(crate) fn of_a_robot(self) -> Result<Self, Fault> {
         let size = self.scalar.value().abs();
         let fault = |what: &str| {
@@ -195,7 +196,7 @@ impl Value {
         Ok(product)
     }
 
-    /// Itself as an exponent.
+    /// The value as an exponent.
     pub(crate) fn small_integer(&self) -> Result<i8, Fault> {
         self.no_variables("an exponent")?;
         let integer = self.scalar.as_ratio().filter(|r| r.denominator() == 1);
@@ -221,7 +222,7 @@ impl Value {
         Self::constant(Scalar::Number(root), dimension).checked()
     }
 
-    /// Fails if there are joint variables in the value.
+    /// Returns an error if the value contains joint variables.
     pub(crate) fn no_variables(&self, place: &str) -> Result<(), Fault> {
         if self.terms.is_empty() {
             return Ok(());
@@ -254,7 +255,7 @@ impl Value {
     }
 }
 
-/// Joint variables times a constant, which must be a fraction.
+/// Joint variables times a constant, which has to be a fraction.
 fn scaled(terms: &[(usize, Ratio)], factor: &Value) -> Result<Vec<(usize, Ratio)>, Fault> {
     factor.no_variables("the factor of a joint variable")?;
     let Some(ratio) = factor.scalar.as_ratio() else {

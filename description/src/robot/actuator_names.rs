@@ -1,5 +1,5 @@
-//! What actuators are called: one name, which is printed everywhere and stands in logs and generated
-//! code, and other spellings that are understood wherever a name is given.
+//! Names of actuators: one for output, logs and generated code, and alternative spellings for
+//! input.
 
 use crate::diagnostic::did_you_mean;
 
@@ -11,16 +11,18 @@ pub struct ActuatorNames {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Names {
-    /// The one that is printed.
+    /// The name for output.
     usual: String,
-    /// Others that are understood.
+    /// Alternative spellings.
     others: Vec<String>,
 }
 
 impl ActuatorNames {
-    /// Names from those of legs and actuated joints. The usual one is the leg's where the leg has one
-    /// actuator, the joint's in a robot of one leg without a platform (`single`), else `leg_joint`, or
-    /// `leg.joint` where two actuators would be called alike.
+    /// Names from those of legs and actuated joints.
+    ///
+    /// The usual name is the leg's if it has one actuator, or the joint's in a robot of one leg
+    /// without a platform (`single`). Otherwise it is `leg_joint`, or `leg.joint` if two actuators
+    /// would have the same name.
     #[must_use]
     pub fn new<'a>(single: bool, actuators: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let actuators: Vec<(&str, &str)> = actuators.into_iter().collect();
@@ -56,7 +58,7 @@ impl ActuatorNames {
         self.all.iter().map(|names| names.usual.as_str())
     }
 
-    /// The actuator that a name means: its usual one, or another spelling that means no other actuator.
+    /// The actuator of a name: the usual one, or an unambiguous alternative spelling.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         let usual = self.usual().position(|usual| usual == name);
@@ -67,7 +69,7 @@ impl ActuatorNames {
         })
     }
 
-    /// A way out for a name that means no actuator, or several.
+    /// A remedy for an unknown or ambiguous name.
     #[must_use]
     pub fn help(&self, name: &str) -> String {
         did_you_mean(name, self.usual()).unwrap_or_else(|| {
@@ -106,7 +108,8 @@ mod tests {
         for (index, name) in usual.iter().enumerate() {
             assert_eq!(names.find(name), Some(index));
         }
-        // A leg's name is its actuator's, also where it could be spelt from another leg and its joint.
+        // A leg's name is that of its actuator, even if another leg and its joint could be spelt
+        // so.
         let names = ActuatorNames::new(false, [("a", "1"), ("a", "2"), ("a_1", "x")]);
         assert_eq!(names.usual().collect::<Vec<_>>(), ["a.1", "a_2", "a_1.x"]);
     }

@@ -1,13 +1,15 @@
-//! Chains: legs that start from, or end on, a body of the skeleton or of a chain that is placed before. The
-//! skeleton is the leg without an end of a robot without platform; it is placed first, and its joints are the
-//! independent coordinates, together with those of branches: legs without an end on bodies of chains.
+//! Chains: legs that start from, or end on, a body of the skeleton or of an earlier chain.
+//!
+//! The skeleton is the leg without an end in a robot without a platform, and is placed first. Its
+//! joints are the independent coordinates, together with those of branches: legs without an end on
+//! bodies of chains.
 
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use crate::robot::model::{BodyIndex, Leg, Spanned};
 use crate::robot::shape::Shape;
 use crate::toml_text::reader::Context;
 
-/// Looks up the bodies that chains join, and reports those that are not there.
+/// Resolves the bodies that chains connect, and reports unknown ones.
 pub(crate) fn attach(
     shapes: &[Shape<'_, '_>],
     has_platform: bool,
@@ -18,12 +20,12 @@ pub(crate) fn attach(
         refuse_bodies(shapes, context);
         return;
     }
-    // Without a skeleton an end has nothing to end on: that is told of the ends.
+    // Without a skeleton an end has no body; this is reported for the ends.
     let Some(first) = legs.iter().position(|leg| leg.end.is_none()) else {
         return;
     };
     if legs.len() == 1 {
-        // After another error a chain may be missing that was meant.
+        // After another error an intended chain may be missing.
         if context.is_clean() {
             refuse_bodies(shapes, context);
         }
@@ -106,15 +108,15 @@ pub(crate) fn attach(
     }
 }
 
-/// The bodies that a chain may join: those of the skeleton and of the chains before it.
+/// The bodies that a chain may connect: those of the skeleton and of earlier chains.
 struct Bodies<'a> {
     before: &'a [Leg],
     after: &'a [Leg],
-    /// What the leg that joins them is, and its name.
+    /// Noun and name of the leg that connects them.
     own: (&'static str, String),
 }
 
-/// What a leg behind the skeleton is called.
+/// Noun for a leg after the skeleton.
 const fn kind(leg: &Leg) -> &'static str {
     match leg.end {
         None => "branch",
@@ -167,7 +169,7 @@ impl Bodies<'_> {
     }
 }
 
-/// The body of a leg that has a name, among others that would do in its place.
+/// The body of this name in a leg; the error suggests other valid bodies.
 fn body_of(
     leg: usize,
     of: &Leg,
@@ -190,7 +192,7 @@ fn body_of(
     Err(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help))
 }
 
-/// The body that chains start from without a name.
+/// Name of the ground, from which chains start by default.
 pub(crate) const GROUND: &str = "ground";
 
 fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
@@ -208,7 +210,7 @@ fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UNKNOWN_NAME, message, span).help(help)
 }
 
-/// Bodies are named of a skeleton only.
+/// Reports bodies in robots without a skeleton.
 fn refuse_bodies(shapes: &[Shape<'_, '_>], context: &Context) {
     for shape in shapes {
         let of_end = shape.end.as_ref().and_then(|end| end.body.as_ref());

@@ -1,12 +1,14 @@
-//! Joints of several axes as joints of one: what a word of `type` stands for.
+//! Conversion of joints with several axes to joints with one axis.
 
 use crate::robot::joint_shape::JointShape;
 use crate::robot::model::{JointKind, Spanned};
 use crate::robot::word::{Axis, Word};
 use overact_core::StandardParameter;
 
-/// The joint as its axes. `first` is what its table says, with the parameters of the last body; `at` is the
-/// number of the first axis in the leg.
+/// Splits a joint into its axes.
+///
+/// `first` is its table, with the parameters of the last body; `at` is the index of the first axis
+/// in the leg.
 pub(crate) fn split<'c, 't>(
     word: Word,
     first: JointShape<'c, 't>,
@@ -22,7 +24,7 @@ pub(crate) fn split<'c, 't>(
         "" => name.clone(),
         ending => Spanned::new(format!("{}_{ending}", name.value), name.span.clone()),
     };
-    // Between the axes there is friction, and nothing that has a mass.
+    // Intermediate axes have friction, but no mass.
     let between = |axis: &Axis| -> Vec<StandardParameter> {
         let of_joint = parameters.iter().copied().filter(|p| !p.is_inertial());
         match axis.1 {
@@ -65,7 +67,8 @@ pub(crate) fn split<'c, 't>(
     joints
 }
 
-/// Gives the turn of a helical joint what its table says of the motion; the slide keeps the place.
+/// Moves the keys about the motion of a helical joint to its rotation; the slide keeps the
+/// geometry.
 fn turned<'c, 't>(slide: &mut JointShape<'c, 't>, turn: &mut JointShape<'c, 't>) {
     turn.steps[4] = slide.steps[4].take();
     turn.actuated = std::mem::take(&mut slide.actuated);

@@ -1,14 +1,16 @@
-//! What a description says that may not be meant, though it can be read: numbers without a unit that are those of
-//! another one, a payload that is written with a capital, expressions of columns that end too early.
+//! Warnings about readable text that is probably not intended.
+//!
+//! Examples are numbers without a unit that would fit another unit, a capitalised payload, and
+//! incomplete expressions of columns.
 
 use crate::robot::model::Spanned;
 use crate::toml_text::reader::{Context, Item};
 use overact_exact::{Angle, Number};
 
-/// Lengths of robots that are longer than this are mostly millimetres, m.
+/// Length (m) above which numbers without a unit are probably millimetres.
 const LONGEST: f64 = 50.0;
 
-/// Notes a bare angle above a turn.
+/// Warns of a bare angle above a full turn.
 pub(crate) fn angle(item: &Item<'_, '_>, angle: Angle) {
     let (_, radians) = angle.parts();
     let bare = radians.value();
@@ -21,7 +23,7 @@ pub(crate) fn angle(item: &Item<'_, '_>, angle: Angle) {
     }
 }
 
-/// Notes a length that hardly any robot has.
+/// Warns of a length that is unusual for a robot.
 pub(crate) fn length(item: &Item<'_, '_>, length: Number) {
     let metres = length.value();
     if metres.abs() > LONGEST {
@@ -35,7 +37,7 @@ pub(crate) fn length(item: &Item<'_, '_>, length: Number) {
     }
 }
 
-/// Notes the name of a fixed joint that is `payload` but for capitals.
+/// Warns of a fixed joint whose name is `payload` except for capitals.
 pub(crate) fn payload(context: &Context<'_>, name: &Spanned<String>) {
     let Spanned { value: name, span } = name;
     if name != "payload" && name.eq_ignore_ascii_case("payload") {
@@ -46,13 +48,13 @@ pub(crate) fn payload(context: &Context<'_>, name: &Spanned<String>) {
     }
 }
 
-/// Functions of other languages that expressions of columns do not have.
+/// Functions of other languages that expressions of columns do not support.
 const FOREIGN: [&str; 14] = [
     "deg2rad", "rad2deg", "radians", "degrees", "log", "log10", "ln", "min", "max", "round",
     "diff", "gradient", "mean", "cumsum",
 ];
 
-/// Notes an expression of columns that can't be read as one; a column of a log may have such a name.
+/// Warns of an invalid expression of columns; a log's column may have such a name.
 pub(crate) fn column(item: &Item<'_, '_>, text: &str) {
     if let Some(why) = broken(text) {
         let what = format!(
@@ -63,7 +65,7 @@ pub(crate) fn column(item: &Item<'_, '_>, text: &str) {
     }
 }
 
-/// Why a text that looks like an expression is none.
+/// The reason why a text that looks like an expression is invalid.
 fn broken(text: &str) -> Option<String> {
     let text = text.trim();
     if text.ends_with(['+', '-', '*', '/', '^']) {

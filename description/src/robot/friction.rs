@@ -1,5 +1,4 @@
-//! Friction of joints and motors beside the symmetric kind: the key `stribeck`, and lists of parameters that
-//! say the same twice.
+//! Asymmetric and Stribeck friction of joints and motors, and lists with redundant parameters.
 
 use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
@@ -9,7 +8,8 @@ use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
 use overact_exact::Number;
 
-/// Reads the key `stribeck` of a joint or motor: the velocity at which half of what standstill has more is left.
+/// Reads the key `stribeck` of a joint or motor: the velocity at which half of the excess static
+/// friction is left.
 pub(crate) fn stribeck(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Number> {
     let (dimension, example) = match kind {
         JointKind::Revolute => (Dimension::ANGULAR_SPEED, "0.05 rad/s"),
@@ -33,14 +33,14 @@ pub(crate) fn stribeck(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> O
     None
 }
 
-/// Which parameters of a list stand for the same friction: each of these groups is one too many.
+/// Groups of parameters that describe the same friction twice.
 const TWICE: [([&str; 3], &str); 3] = [
     (["fv", "fv_pos", "fv_neg"], "viscous friction"),
     (["fs", "fs_pos", "fs_neg"], "Coulomb friction"),
     (["off", "fs_pos", "fs_neg"], "an offset"),
 ];
 
-/// Reports a list that has friction for both directions and for each.
+/// Reports a list with friction for both directions and for each one.
 pub(crate) fn check(item: &Item<'_, '_>, parameters: &[StandardParameter]) {
     let has = |name: &&str| parameters.iter().any(|one| one.name() == *name);
     let Some((names, what)) = TWICE.iter().find(|(names, _)| names.iter().all(&has)) else {

@@ -9,7 +9,7 @@ use overact_exact::{Angle, Number};
 impl Item<'_, '_> {
     /// Three numbers of one dimension.
     pub(crate) fn vector(&self, dimension: Dimension, scope: &Scope) -> Option<[Number; 3]> {
-        // All three are evaluated before one that fails ends it.
+        // All three are evaluated before the first failure returns.
         let [x, y, z] = self.triple()?.map(|item| item.number(dimension, scope));
         Some([x?.value, y?.value, z?.value])
     }
@@ -21,7 +21,7 @@ impl Item<'_, '_> {
     }
 }
 
-/// A placement whose position and orientation are both optional.
+/// A placement with optional position and orientation.
 pub(crate) fn placement(
     at: Option<&Item<'_, '_>>,
     rotation: Option<&Item<'_, '_>>,

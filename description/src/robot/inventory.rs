@@ -1,5 +1,4 @@
-//! What the tables after the legs need to know of the robot: its actuators, coordinates and
-//! parameters by name.
+//! Actuators, coordinates and parameters of the robot by name, for the tables after the legs.
 
 use crate::expressions::dimension::Dimension;
 use crate::robot::actuator_names::ActuatorNames;
@@ -12,7 +11,7 @@ use overact_core::StandardParameter;
 /// A body that has parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Body {
-    /// A joint and the body behind it.
+    /// A joint and the body that it moves.
     Joint {
         /// Index of the leg.
         leg: usize,
@@ -25,12 +24,12 @@ pub enum Body {
     Payload,
 }
 
-/// What the tables that follow the legs need to know of the robot.
+/// Data of the robot for the tables after the legs.
 pub(crate) struct Inventory<'r> {
     pub(crate) platform: Option<&'r Platform>,
     pub(crate) legs: &'r [Leg],
     pub(crate) scope: &'r Scope,
-    /// Names of the payloads, where there are several.
+    /// Names of the payloads, if there are several.
     pub(crate) payloads: &'r [Spanned<String>],
 }
 
@@ -101,7 +100,7 @@ impl Inventory<'_> {
         all
     }
 
-    /// The parameters of the payload once for each of those that have names.
+    /// The parameters of the payload, once for each named payload.
     fn of_payloads(
         &self,
         all: &[(String, Body, StandardParameter, Dimension)],
@@ -122,7 +121,7 @@ impl Inventory<'_> {
         self.payloads.iter().flat_map(of).collect()
     }
 
-    /// What the actuators are called.
+    /// Names of the actuators.
     pub(crate) fn actuator_names(&self) -> ActuatorNames {
         let name = |(leg, joint): (usize, usize)| {
             let leg = self.legs.get(leg)?;
@@ -136,8 +135,10 @@ impl Inventory<'_> {
     }
 }
 
-/// The independent joints of a robot without a platform under the names of its coordinates: those of the first leg
-/// by their own, those of branches with their leg's. Joints of chains follow from them.
+/// Independent joints of a robot without a platform, with the names of its coordinates.
+///
+/// Joints of the first leg have their own names, those of branches include their leg's. Joints of
+/// chains are dependent.
 #[must_use]
 pub fn independent_joints(legs: &[Leg]) -> Vec<(String, &crate::robot::model::Joint)> {
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! The joints of a placed leg: geometry, and which joint follows which.
+//! Joints of a placed leg: geometry and coupling.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expressions::dimension::Dimension;
@@ -30,7 +30,7 @@ pub(crate) fn read(
             Some(dimension) => {
                 scope.add(joint.variable(), Some(Value::variable(index, dimension)));
             }
-            // Whoever actuates a fixed joint has been told so, and means a variable.
+            // An actuated fixed joint is already reported; a variable was intended.
             None if joint.actuated => scope.add(joint.variable(), None),
             None => {}
         }
@@ -138,8 +138,8 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// What a key says as an expression of the joint's position, in which `q` is the joint's variable even where
-    /// it follows others.
+    /// The value of a key as an expression of the joint's position; `q` is the joint's variable,
+    /// even if it is coupled.
     fn formula<'i, 'c, 't, T>(
         &self,
         item: Option<&'i Item<'c, 't>>,
@@ -153,7 +153,7 @@ impl Reader<'_, '_, '_> {
         read(item?, kind, &scope)
     }
 
-    /// A value with the place of its key, or of the joint if there is none.
+    /// A value with the location of its key, or of the joint without a key.
     fn spanned<T>(&self, item: Option<&Item<'_, '_>>, value: T) -> Spanned<T> {
         Spanned::new(
             value,
@@ -183,8 +183,9 @@ impl Reader<'_, '_, '_> {
         value.unwrap_or_else(|| self.spanned(item, Number::ZERO))
     }
 
-    /// A value that holds no joint variable; an error says where one may stand. `q` counts as one even in a joint
-    /// that has none.
+    /// A value without joint variables; the error states where they are allowed.
+    ///
+    /// `q` counts as a variable even in a joint that has none.
     fn constant(&self, item: &Item<'_, '_>, dimension: Dimension, scope: &Scope) -> Option<Value> {
         let mut scope = scope.clone();
         scope.add("q".to_owned(), Some(Value::variable(self.index, dimension)));
@@ -203,8 +204,9 @@ impl Reader<'_, '_, '_> {
         Some(value)
     }
 
-    /// The constant and the variable part of θ (revolute) or r (prismatic). One that is missing, or
-    /// wrong and reported, is the joint's own variable.
+    /// Constant and variable part of θ (revolute) or r (prismatic).
+    ///
+    /// If it is missing or already reported, it is the joint's own variable.
     fn position(
         &self,
         item: Option<&Item<'_, '_>>,
@@ -229,7 +231,7 @@ impl Reader<'_, '_, '_> {
         (value.scalar, value.terms)
     }
 
-    /// Why a value cannot be the joint's position.
+    /// The error of a value that cannot be the joint's position.
     fn problem(&self, value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
         let has_own = value.terms.iter().any(|(joint, _)| *joint == self.index);
         if value.terms.is_empty() {
@@ -259,8 +261,9 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// What the slide of a helical joint goes along for each radian of its turn: from a length for a turn, or one for a
-/// radian where the unit says so. `None` after an error.
+/// Displacement of a helical joint per radian, from a length per turn or per radian.
+///
+/// The unit decides. `None` after an error.
 fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
     let item = item?;
     let value = item.evaluate(scope)?;
@@ -291,7 +294,7 @@ fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
     lead
 }
 
-/// Writes the variables of dependent joints as combinations of independent ones.
+/// Expresses the variables of coupled joints by independent ones.
 fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
     let given: Vec<Combination> = joints.iter().map(|joint| joint.variable.clone()).collect();
     for (index, joint) in joints.iter_mut().enumerate() {
@@ -318,8 +321,10 @@ fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
     }
 }
 
-/// The variable of one joint in terms of independent ones: dependent ones are replaced until none
-/// is left, which takes at most as many rounds as there are joints unless they form a cycle.
+/// The variable of one joint in terms of independent ones.
+///
+/// Coupled joints are replaced until none is left, which takes at most as many rounds as there are
+/// joints, unless they form a cycle.
 fn independent(given: &[Combination], index: usize) -> Result<Combination, &'static str> {
     let own = |joint: usize| {
         given
@@ -336,7 +341,7 @@ fn independent(given: &[Combination], index: usize) -> Result<Combination, &'sta
     Err("the joints follow each other in a cycle")
 }
 
-/// Replaces every joint variable by what is given for it; `None` on overflow.
+/// Replaces every joint variable by its definition; `None` on overflow.
 fn substitute(given: &[Combination], variable: &Combination) -> Option<Combination> {
     let mut result: Combination = Vec::new();
     for (joint, factor) in variable {

@@ -1,4 +1,4 @@
-//! A joint's table, read without evaluating its expressions.
+//! A joint's table with unevaluated expressions.
 
 use crate::diagnostic::Span;
 use crate::robot::model::{JointKind, Spanned};
@@ -11,9 +11,9 @@ pub(crate) struct JointShape<'c, 't> {
     pub(crate) name: Spanned<String>,
     pub(crate) kind: Spanned<JointKind>,
     pub(crate) antecedent: Option<usize>,
-    /// γ, b, α, d, θ, r where they are given.
+    /// γ, b, α, d, θ, r as far as given.
     pub(crate) steps: [Option<Item<'c, 't>>; 6],
-    /// Whether γ and α are right angles instead: an axis within a joint of several.
+    /// Whether γ and α are right angles instead: for an inner axis of a joint with several axes.
     pub(crate) turned: bool,
     pub(crate) actuated: bool,
     pub(crate) parameters: Vec<StandardParameter>,
@@ -21,15 +21,15 @@ pub(crate) struct JointShape<'c, 't> {
     pub(crate) known: Option<Item<'c, 't>>,
     pub(crate) stribeck: Option<Item<'c, 't>>,
     pub(crate) load: Option<Item<'c, 't>>,
-    /// Of the slide of a helical joint, which follows the turn behind it, what it goes along for a turn.
+    /// Pitch of the slide of a helical joint, which is coupled to the rotation after it.
     pub(crate) pitch: Option<Item<'c, 't>>,
-    /// The word of the table that it is an axis of, and the name of the table's joint.
+    /// The compound joint of which it is an axis, and the name of the table's joint.
     pub(crate) word: Word,
     pub(crate) called: String,
     pub(crate) span: Span,
 }
 
-/// Keys of a joint's geometry, in the order of the MDH step.
+/// Keys of a joint's geometry, in the order of the modified Denavit-Hartenberg step.
 pub(crate) const STEPS: [&str; 6] = ["gamma", "b", "alpha", "d", "theta", "r"];
 
 impl JointShape<'_, '_> {

@@ -1,4 +1,4 @@
-//! The tables `[[place]]`: a shape evaluated with the values of one placement.
+//! The tables `[[place]]`: a shape evaluated with the values of a placement.
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::robot::geometry::placement;
@@ -43,7 +43,7 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
     let shape = table.require("shape", help).and_then(|item| item.string());
     let home = table.get("home");
     let Some((index, shape)) = shape.and_then(|text| find(table, &text, shapes)) else {
-        // Without a shape nobody knows which other keys are right.
+        // Without a shape the valid keys are unknown.
         return None;
     };
     let mut scope = constants.clone();
@@ -79,7 +79,7 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
         base: placement(shape.base_at.as_ref(), shape.base_rotation.as_ref(), &scope),
         joints,
         end,
-        // Names of bodies are looked up when the skeleton is known.
+        // Names of bodies are resolved when the skeleton is known.
         base_body: None,
         end_body: None,
         span: table.span.clone(),

@@ -1,4 +1,4 @@
-//! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
+//! The evaluated robot of a description: one value per placement, lengths in m, masses in kg.
 
 use crate::diagnostic::Span;
 pub use crate::diagnostic::Spanned;
@@ -6,7 +6,7 @@ use crate::expressions::formula::{Formula, Spring};
 use overact_core::StandardParameter;
 use overact_exact::{Angle, Number, Ratio};
 
-/// A motion that a platform can have. Axes are 0, 1, 2 for x, y, z of the base frame.
+/// A motion of a platform. Axes are 0, 1, 2 for x, y, z of the base frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Motion {
     /// Translation along an axis.
@@ -40,8 +40,9 @@ pub enum Motion {
     Spherical,
     /// All six motions.
     Spatial,
-    /// A free body whose legs block some directions, which change with the pose: it moves aside while it
-    /// moves, and only these of x, y, z, rx, ry, rz are independent.
+    /// A free body with parasitic motion: legs block directions that change with the pose.
+    ///
+    /// Only some of x, y, z, rx, ry, rz are independent.
     Parasitic {
         /// Whether each of the six is independent.
         independent: [bool; 6],
@@ -53,8 +54,9 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub const SIX: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 impl Motion {
-    /// Names of the coordinates that a description gives: translations, then `phi` or `rx`, `ry`,
-    /// `rz`. Their number is r, the number of degrees of freedom.
+    /// Names of the coordinates in a description: translations, then `phi` or `rx`, `ry`, `rz`.
+    ///
+    /// Their number is r, the number of degrees of freedom.
     #[must_use]
     pub fn coordinates(self) -> Vec<&'static str> {
         let in_plane = |axis: usize| [AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]];
@@ -75,7 +77,7 @@ impl Motion {
         }
     }
 
-    /// The motion of a pose's numbers: of a platform that moves aside that of a free body.
+    /// The motion of the pose's numbers: that of a free body for a platform with parasitic motion.
     #[must_use]
     pub const fn of_pose(self) -> Self {
         match self {
@@ -88,23 +90,23 @@ impl Motion {
 /// The platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Platform {
-    /// Which motion it has.
+    /// Motion of the platform.
     pub motion: Spanned<Motion>,
-    /// The point of a fixed axis where the platform's origin is at zero, m; zero for other motions.
+    /// Position of the platform's origin on a fixed axis at zero, m; zero for other motions.
     pub axis_at: [Number; 3],
     /// The home pose.
     pub home: PlatformHome,
-    /// How many actuators more than coordinates the robot is meant to have, if that is said.
+    /// Intended number of redundant actuators, if given.
     pub redundancy: Option<Spanned<usize>>,
-    /// Its inertial parameters that are not absent.
+    /// Inertial parameters of the platform that are not absent.
     pub parameters: Vec<StandardParameter>,
     /// Inertial parameters of the payload, if the robot may carry one.
     pub payload: Option<Vec<StandardParameter>>,
-    /// Place of its table.
+    /// Location of the table.
     pub span: Span,
 }
 
-/// The platform's home pose; coordinates that its motion has not are zero.
+/// The platform's home pose; coordinates without motion are zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlatformHome {
     /// Coordinates x, y, z of the platform's origin, m.
@@ -133,10 +135,10 @@ pub struct Placement {
     pub rotation: [Angle; 3],
 }
 
-/// A body of a leg: that behind one of its joints.
+/// A body of a leg: the one that a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BodyIndex {
-    /// The leg, in the order of their places.
+    /// The leg, in the order of placement.
     pub leg: usize,
     /// The joint in its leg.
     pub joint: usize,
@@ -147,8 +149,8 @@ pub struct BodyIndex {
 pub struct Leg {
     /// Name, unique in the robot.
     pub name: Spanned<String>,
-    /// Number of its shape in the order of the file: legs written once and placed several times
-    /// share it.
+    /// Index of its shape in the order of the file, equal for legs that are described once and
+    /// placed several times.
     pub shape: usize,
     /// Name of its shape.
     pub shape_name: String,
@@ -156,17 +158,19 @@ pub struct Leg {
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform, or on a body; `None` for a tree.
+    /// End of the leg on the platform or on a body; `None` for a tree.
     pub end: Option<Spanned<End>>,
-    /// The body of the skeleton, or of a chain before, that the leg starts from; `None` for the ground.
+    /// The body of the skeleton, or of an earlier chain, that the leg starts from; `None` for the
+    /// ground.
     pub base_body: Option<BodyIndex>,
-    /// The body of the skeleton, or of a chain before, that the leg ends on; `None` for the platform.
+    /// The body of the skeleton, or of an earlier chain, that the leg ends on; `None` for the
+    /// platform.
     pub end_body: Option<BodyIndex>,
-    /// Place of its `[[place]]`.
+    /// Location of its `[[place]]`.
     pub span: Span,
 }
 
-/// How a leg ends on the platform.
+/// End of a leg on the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub enum End {
     /// The last frame is fixed on the platform, at this placement in the platform frame.
@@ -175,14 +179,14 @@ pub enum End {
     Point {
         /// The point in the platform frame, m.
         at: [Number; 3],
-        /// Along which axes of the robot's base frame it does. Where it does not, the leg's end may
+        /// Axes of the robot's base frame along which it coincides; along others the leg's end may
         /// slide.
         along: [bool; 3],
     },
 }
 
 impl End {
-    /// The platform point that the last frame's origin meets, in the platform frame, m.
+    /// The platform point that coincides with the last frame's origin, in the platform frame, m.
     #[must_use]
     pub const fn point(&self) -> [Number; 3] {
         match self {
@@ -191,7 +195,7 @@ impl End {
         }
     }
 
-    /// The components of the six-vector (position, orientation) in the base frame that the last frame
+    /// Components of the six-vector (position, orientation) in the base frame that the last frame
     /// shares with the platform.
     #[must_use]
     pub fn shared_components(&self) -> Vec<usize> {
@@ -213,14 +217,14 @@ pub enum JointKind {
     Fixed,
 }
 
-/// A joint and the body behind it.
+/// A joint and the body that it moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Name, unique in its leg.
     pub name: Spanned<String>,
     /// Revolute, prismatic or fixed.
     pub kind: Spanned<JointKind>,
-    /// The joint whose frame this one starts from, an earlier one; `None` for the leg's base.
+    /// The earlier joint that this joint's frame is described from; `None` for the leg's base.
     pub antecedent: Option<usize>,
     /// MDH γ.
     pub gamma: Spanned<Angle>,
@@ -230,37 +234,39 @@ pub struct Joint {
     pub alpha: Spanned<Angle>,
     /// MDH d, m.
     pub d: Spanned<Number>,
-    /// MDH θ; for a revolute joint its constant part.
+    /// MDH θ; for a revolute joint the constant part.
     pub theta: Spanned<Angle>,
-    /// MDH r, m; for a prismatic joint its constant part.
+    /// MDH r, m; for a prismatic joint the constant part.
     pub r: Spanned<Number>,
-    /// The joint's variable, which adds to θ (revolute) or r (prismatic), as a linear combination
-    /// of the independent joint variables of the leg: itself with factor one, or others for a
-    /// dependent joint (in rad or m per rad or m). Empty for a fixed joint.
+    /// The joint's variable, which adds to θ (revolute) or r (prismatic).
+    ///
+    /// It is a linear combination of the leg's independent joint variables. An independent joint
+    /// has itself with factor one, a coupled joint has others (in rad or m per rad or m), a fixed
+    /// joint none.
     pub variable: Vec<(usize, Ratio)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// The body's and the joint's standard parameters that are not absent, in order.
+    /// Standard parameters of the body and the joint that are not absent, in order.
     pub parameters: Vec<StandardParameter>,
-    /// Rough position at home, rad or m; zero for a dependent or fixed joint.
+    /// Rough position at home, rad or m; zero for a coupled or fixed joint.
     pub home: Number,
-    /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
-    /// the variable.
+    /// Gear ratio, rotor turns per unit of the variable, of a motor that moves other joints and
+    /// carries no body.
     pub motor: Option<Number>,
-    /// What the position adds to its torque, with an unknown coefficient.
+    /// Position-dependent torque with an unknown coefficient.
     pub spring: Option<Spring>,
-    /// The torque of its position that is known, N m or N, without any coefficient.
+    /// Position-dependent torque that is known, N m or N, without a coefficient.
     pub known: Option<Formula>,
-    /// The Stribeck velocity of its friction, rad/s or m/s.
+    /// Stribeck velocity of the joint's friction, rad/s or m/s.
     pub stribeck: Option<Number>,
-    /// The load in proportion to which it has friction, with an unknown coefficient.
+    /// Load to which friction is proportional, with an unknown coefficient.
     pub load: Option<Spring>,
-    /// Place of its table.
+    /// Location of its table.
     pub span: Span,
 }
 
 impl Joint {
-    /// What one of its parameters multiplies that is described as a formula, if it does.
+    /// The formula that multiplies one of its parameters, if there is one.
     pub(crate) fn formula_of(&self, symbol: StandardParameter) -> Option<&Spring> {
         match symbol {
             StandardParameter::K => self.spring.as_ref(),

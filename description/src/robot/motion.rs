@@ -1,15 +1,17 @@
-//! The motions that a platform can have, their coordinates x and their twists t = D v, eq. (14).
+//! Motions of a platform, their coordinates x and their twists t = D v, eq. (14).
 //!
 //! The twist is the velocity of the platform's origin and its angular velocity, both in the base
-//! frame. Every independent coordinate v moves the platform along one constant direction of that
-//! six-vector, so D has one unit column per coordinate and is constant, but for a platform with parasitic motion
-//! (`parasitic`): its legs' closures put entries beside the units that change with the pose. Orientations in space are unit
-//! quaternions (w, x, y, z), which have no representation singularity; their v is the angular velocity.
+//! frame. Every independent coordinate v moves the platform along a constant direction of that
+//! six-vector, so D is constant with one unit column per coordinate. For parasitic motion
+//! (`parasitic`), the legs' closures add entries that change with the pose. Orientations in space
+//! are unit quaternions (w, x, y, z), which have no representation singularity; their v is the
+//! angular velocity.
 
 use super::model::Motion;
 
-/// One independent coordinate of the twist: a unit column of D; of a platform with parasitic motion the column's
-/// unit entry, beside which the legs' closures put others.
+/// An independent coordinate of the twist: a unit column of D.
+///
+/// For parasitic motion, it is the unit entry of the column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TwistCoordinate {
     /// Velocity of the platform's origin along a coordinate axis, m/s.
@@ -50,7 +52,7 @@ impl Motion {
         }
     }
 
-    /// Names of the pose's numbers.
+    /// Names of the numbers in a pose.
     #[must_use]
     pub fn pose_coordinates(self) -> Vec<&'static str> {
         const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];

@@ -1,8 +1,9 @@
 //! The tables `[[leg.NAME.motor]]`: transmissions between motors and joints.
 //!
-//! A motor turns a combination c of joint variables behind its gear: θ = ratio × c. Where several joints are
-//! coupled its rotor and its friction act on c and not on any joint, and their torque reaches the joints by
-//! the combination's factors. In the model a motor is a joint that follows others and carries no body.
+//! A motor drives a combination c of joint variables through its gear: θ = ratio × c. With several
+//! coupled joints its rotor inertia and friction act on c and not on a single joint. Their torque
+//! acts on the joints by the combination's factors. In the model a motor is a coupled joint without
+//! a body.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::expressions::dimension::Dimension;
@@ -15,19 +16,19 @@ use crate::toml_text::scope::{Scope, is_word};
 use overact_core::StandardParameter;
 use overact_exact::{Angle, Number};
 
-/// The table of a motor, its expressions not evaluated.
+/// The table of a motor, with unevaluated expressions.
 pub(crate) struct MotorShape<'c, 't> {
     name: Spanned<String>,
-    /// What it turns.
+    /// The driven combination of joints.
     turns: Option<Item<'c, 't>>,
     ratio: Option<Item<'c, 't>>,
     stribeck: Option<Item<'c, 't>>,
-    /// Parameters where they are given.
+    /// Parameters, if given.
     parameters: Option<Vec<StandardParameter>>,
     span: Span,
 }
 
-/// Reads the motors of a leg whose joints have these names.
+/// Reads the motors of a leg with these joint names.
 pub(crate) fn shapes<'c, 't>(
     item: &Item<'c, 't>,
     joints: &[Spanned<String>],
@@ -77,8 +78,10 @@ fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
 }
 
 impl MotorShape<'_, '_> {
-    /// The motor as a joint that follows others; its variable is what is given, in joints that may follow
-    /// others themselves. `None` after an error.
+    /// The motor as a coupled joint; its variable is as given, in joints that may be coupled
+    /// themselves.
+    ///
+    /// `None` after an error.
     pub(crate) fn joint(&self, scope: &Scope) -> Option<Joint> {
         let ratio = match &self.ratio {
             Some(item) => gear_ratio(item, scope),
@@ -124,8 +127,9 @@ impl MotorShape<'_, '_> {
     }
 }
 
-/// The parameters of a motor whose table names none: a motor of one joint shares the joint's, and offsets of
-/// motors are told by the joints'.
+/// Default parameters of a motor: a motor of one joint shares those of the joint.
+///
+/// Offsets of motors are determined by those of the joints.
 fn own(coupled: bool) -> Vec<StandardParameter> {
     use StandardParameter as P;
     match coupled {
@@ -134,7 +138,7 @@ fn own(coupled: bool) -> Vec<StandardParameter> {
     }
 }
 
-/// A gear ratio: a number that is not zero; a negative one turns the direction round.
+/// A gear ratio: a nonzero number; a negative one reverses the direction.
 fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
     let ratio = item.number(Dimension::NONE, scope)?.value;
     if ratio.is_zero() {
@@ -146,7 +150,7 @@ fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
     Some(ratio)
 }
 
-/// Why a value cannot be what a motor turns.
+/// The error of a value that a motor cannot drive.
 fn problem(value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
     if value.terms.is_empty() {
         let error = item.error(

@@ -5,7 +5,7 @@ use crate::robot::model::JointKind;
 
 use overact_core::StandardParameter;
 
-/// Dimension of a parameter of a joint of this kind.
+/// Dimension of a parameter for a joint of this kind.
 pub(crate) fn dimension(parameter: StandardParameter, kind: JointKind) -> Dimension {
     let slides = kind == JointKind::Prismatic;
     match parameter {

@@ -6,19 +6,19 @@ use crate::robot::model::JointKind;
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter as P;
 
-/// Whose parameters a list names.
+/// The kind of body to which a list of parameters belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Owner {
-    /// A body behind a joint of this kind.
+    /// A body that is moved by a joint of this kind.
     Joint(JointKind),
-    /// A motor that turns joints.
+    /// A motor that drives joints.
     Motor,
     /// The platform or the payload.
     FreeBody,
 }
 
 impl Owner {
-    /// The parameters that `"all"` stands for.
+    /// The parameters of `"all"`.
     fn all(self) -> &'static [P] {
         match self {
             Self::FreeBody | Self::Joint(JointKind::Fixed) => &P::INERTIA,
@@ -27,13 +27,13 @@ impl Owner {
         }
     }
 
-    /// Whether it can have a parameter.
+    /// Whether a parameter is possible.
     fn can_have(self, parameter: P) -> bool {
         let moves = !matches!(self, Self::FreeBody | Self::Joint(JointKind::Fixed));
         self.all().contains(&parameter) || moves && P::DIRECTED.contains(&parameter)
     }
 
-    /// The parameters of a body whose description names none.
+    /// The default parameters of a body.
     pub(crate) fn default(self, actuated: bool) -> Vec<P> {
         let all = self.all().iter().copied();
         all.filter(|p| actuated || *p != P::Ia).collect()
@@ -41,7 +41,7 @@ impl Owner {
 }
 
 impl Item<'_, '_> {
-    /// The parameters of a list, sorted, each once; a single string stands for a list of one.
+    /// The parameters of a list, sorted and unique; a single string is a list of one.
     pub(crate) fn parameters(&self, owner: Owner) -> Option<Vec<P>> {
         let names = if self.value.is_str() {
             vec![self.clone()]

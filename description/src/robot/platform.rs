@@ -8,7 +8,7 @@ use crate::toml_text::reader::Item;
 use crate::toml_text::scope::Scope;
 use overact_exact::Number;
 
-/// The words for motions.
+/// Keywords of motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Word {
     FixedAxis,
@@ -75,7 +75,7 @@ pub(crate) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
     })
 }
 
-/// A free platform of which only some coordinates are independent: the legs' closures give the others.
+/// A free platform with some independent coordinates; the legs' closures give the others.
 fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
     if motion != Motion::Spatial {
         let message = "`independent` has no meaning for this motion";
@@ -149,13 +149,14 @@ fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Mot
     Some((motion, at))
 }
 
-/// The plane's normal or the rotation's axis; z if it is not given.
+/// The plane's normal or the rotation's axis; z by default.
 fn normal(axis: Option<&Item<'_, '_>>) -> Option<usize> {
     axis.map_or(Some(2), |item| Some(item.choice(&AXES)?.value))
 }
 
-/// Motion on a fixed axis and a point of it; the word alone is a translation along an axis through the
-/// origin.
+/// Motion on a fixed axis and a point of it.
+///
+/// The keyword alone is a translation along an axis through the origin.
 fn fixed_axis(axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Number; 3])> {
     let Some(item) = axis.filter(|item| item.is_table()) else {
         let motion = Motion::FixedAxis {

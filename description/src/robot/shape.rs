@@ -1,4 +1,4 @@
-//! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
+//! The tables `[leg.NAME]`: shapes of legs with unevaluated expressions.
 
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use crate::robot::compound::split;
@@ -15,11 +15,11 @@ use overact_core::StandardParameter;
 /// A leg's shape.
 pub(crate) struct Shape<'c, 't> {
     pub(crate) name: Spanned<String>,
-    /// Names of the constants that each placement gives.
+    /// Names of the constants that each placement sets.
     pub(crate) variables: Vec<Spanned<String>>,
     pub(crate) base_at: Option<Item<'c, 't>>,
     pub(crate) base_rotation: Option<Item<'c, 't>>,
-    /// The body of the skeleton that the base is fixed on; the ground without it.
+    /// The body of the skeleton on which the base is fixed; the ground by default.
     pub(crate) base_body: Option<Spanned<String>>,
     pub(crate) joints: Vec<JointShape<'c, 't>>,
     pub(crate) motors: Vec<MotorShape<'c, 't>>,
@@ -34,12 +34,12 @@ pub(crate) struct EndShape<'c, 't> {
     pub(crate) rotation: Option<Item<'c, 't>>,
     /// Axes of the base frame along which a point end coincides with the platform's point.
     pub(crate) along: [bool; 3],
-    /// The body of the skeleton that the end meets; the platform without it.
+    /// The body of the skeleton on which the end is; the platform by default.
     pub(crate) body: Option<Spanned<String>>,
     pub(crate) span: Span,
 }
 
-/// Reads a shape; `None` if it is no table.
+/// Reads a shape; `None` if it is not a table.
 pub(crate) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Shape<'c, 't>> {
     let name = item.key.clone();
     let table = item.table(format!("the leg `{}`", name.value))?;
@@ -78,7 +78,7 @@ pub(crate) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
     })
 }
 
-/// The variables whose names can be used; the others are reported and left out.
+/// The variables with valid names; others are reported.
 fn valid_variables(
     table: &Table<'_, '_>,
     variables: Vec<Spanned<String>>,
@@ -114,7 +114,7 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
         item.context
             .report(item.error(Code::LEG_EMPTY_OR_LARGE, "a leg needs at least one joint"));
     }
-    // Names come first, so that an antecedent can be told from a wrong name.
+    // Names come first, to distinguish antecedents from wrong names.
     let names: Vec<_> = tables
         .iter()
         .enumerate()
@@ -127,7 +127,7 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
         .collect();
     check_order(&tables, &antecedents);
     let words: Vec<_> = tables.iter().map(word).collect();
-    // The first axis of each table's joint, and behind all.
+    // The first axis of each table's joint, and the total number.
     let firsts = words.iter().scan(0, |next, word| {
         let first = *next;
         *next += word.value.count();
@@ -150,10 +150,10 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
     joints
 }
 
-/// What a pitch is, for whoever gave none.
+/// Help for a missing pitch.
 const PITCH: &str = "pitch = \"5 mm\" for each turn about z, or \"0.8 mm/rad\" for each radian";
 
-/// The word for a table's joint; a turn, where there is none that is known.
+/// The keyword of a table's joint; a revolute joint if it is unknown.
 fn word(table: &Table<'_, '_>) -> Spanned<Word> {
     let help = "type = \"revolute\", \"prismatic\" or \"fixed\", or a joint of several axes: \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\"";
     let word = table
@@ -165,7 +165,7 @@ fn word(table: &Table<'_, '_>) -> Spanned<Word> {
     ))
 }
 
-/// Reports names that two joints have.
+/// Reports duplicate names of joints.
 fn check_names(item: &Item<'_, '_>, joints: &[JointShape<'_, '_>]) {
     for (index, joint) in joints.iter().enumerate() {
         let name = &joint.name;
@@ -197,7 +197,7 @@ fn joint_name(table: &Table<'_, '_>, index: usize) -> Spanned<String> {
     name
 }
 
-/// Index and place of a joint's antecedent; `None` for the base.
+/// Index and location of a joint's antecedent; `None` for the base.
 fn antecedent(
     table: &Table<'_, '_>,
     index: usize,
@@ -319,7 +319,7 @@ fn joint<'c, 't>(
     }
 }
 
-/// The pitch of a helical joint; an error where it is absent, or said of another joint.
+/// The pitch of a helical joint; an error if it is missing, or given for another joint.
 fn pitch<'c, 't>(table: &Table<'c, 't>, word: Word) -> Option<Item<'c, 't>> {
     if word == Word::Helical {
         return table.require("pitch", PITCH);
@@ -360,7 +360,7 @@ fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
     })
 }
 
-/// The axes of `along = ["x", "y"]`; all of them without the key.
+/// The axes of `along = ["x", "y"]`; all by default.
 fn along(item: Option<&Item<'_, '_>>, rigid: bool) -> [bool; 3] {
     let Some(item) = item else { return [true; 3] };
     if rigid {

@@ -1,8 +1,10 @@
-//! Torques that a joint's position makes: springs, linear in one unknown coefficient, and what is known.
+//! Position-dependent torques of joints: springs, linear in one unknown coefficient, and known
+//! torques.
 //!
-//! The key `spring` of a joint is an expression of its variable `q`: what a unit of the coefficient adds to
-//! the joint's torque. Of a linear spring that is `q` less its rest position; any lever, cable or spring of
-//! another kind has its own. The key `known` is the torque itself. Expressions of `q` are kept as formulas, constants in them are exact.
+//! The key `spring` of a joint is an expression of its variable `q`: the joint's torque per unit of
+//! the coefficient. For a linear spring it is `q` minus its rest position; levers, cables and other
+//! springs have their own. The key `known` is the torque itself. Expressions of `q` are stored as
+//! formulas with exact constants.
 
 use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
@@ -15,7 +17,7 @@ use crate::toml_text::reader::Item;
 use crate::toml_text::scope::Scope;
 use overact_exact::{Number, Ratio};
 
-/// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
+/// Reads the key `spring` of a joint; the scope contains `q` as the joint's variable.
 pub(crate) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
     let effort = effort(item, kind, "a fixed joint has no spring")?;
     let constant = "a torque that does not depend on the position is no spring";
@@ -33,7 +35,8 @@ pub(crate) fn load(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Optio
     with_coefficient(item, scope, effort, (constant, help))
 }
 
-/// A formula that is an effort for each unit of a coefficient; one that is constant is told what it is.
+/// A formula of an effort per unit of a coefficient; constant formulas are errors with an
+/// explanation.
 fn with_coefficient(
     item: &Item<'_, '_>,
     scope: &Scope,
@@ -80,7 +83,7 @@ pub(crate) fn known(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Opti
     Some(found.formula())
 }
 
-/// The dimension of what acts on a joint; `None` for a fixed one, which is reported.
+/// Dimension of forces on a joint; `None` for a fixed one, which is reported.
 fn effort(item: &Item<'_, '_>, kind: JointKind, fixed: &str) -> Option<Dimension> {
     match kind {
         JointKind::Revolute => Some(Dimension::TORQUE),
@@ -94,7 +97,7 @@ fn effort(item: &Item<'_, '_>, kind: JointKind, fixed: &str) -> Option<Dimension
     }
 }
 
-/// A value that may depend on a joint's position in any way.
+/// A value with any dependence on a joint's position.
 #[derive(Debug, Clone)]
 pub(crate) enum Positional {
     /// Linear in the position.
@@ -105,7 +108,7 @@ pub(crate) enum Positional {
 
 const TOO_LARGE: &str = "the value is too large";
 
-/// Operations of a formula, at most.
+/// Largest number of operations of a formula.
 const LONGEST: usize = 1000;
 
 impl Positional {
@@ -142,7 +145,7 @@ impl Positional {
     }
 }
 
-/// Two parts of a formula, if they are not too long together.
+/// Two operands of a formula, unless they are too long together.
 fn parts(one: Positional, two: Positional) -> Result<[Box<Formula>; 2], Fault> {
     let parts = [one, two].map(Positional::formula);
     if parts.iter().map(Formula::size).sum::<usize>() < LONGEST {
@@ -190,7 +193,7 @@ impl Quantity for Positional {
         if let (Self::Exact(a), Self::Exact(b)) = (&self, &other)
             && (a.terms.is_empty() || b.terms.is_empty())
         {
-            // A factor that is no fraction, a root for instance, makes a formula of a position.
+            // An irrational factor, such as a root, makes a position a formula.
             if let Ok(product) = a.clone().times(b.clone()) {
                 return Ok(Self::Exact(product));
             }
@@ -262,7 +265,7 @@ impl Quantity for Positional {
     }
 }
 
-/// A sine, cosine or tangent of an angle that is linear in the joint's position.
+/// Sine, cosine or tangent of an angle that is linear in the joint's position.
 fn turned(name: &str, angle: &Value) -> Result<Positional, Fault> {
     if !angle.dimension.fits(Dimension::ANGLE) {
         let found = angle.dimension.name();

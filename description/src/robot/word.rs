@@ -1,4 +1,4 @@
-//! Joints of several axes: words for what is otherwise written axis by axis.
+//! Joints of several axes: keywords for sequences of joints with one axis.
 //!
 //! | type | axes |
 //! |---|---|
@@ -6,22 +6,23 @@
 //! | `universal` | turns about z and about x |
 //! | `spherical` | turns about z, x and y |
 //! | `planar` | slides along x and y, a turn about z |
-//! | `helical` | a slide along z that follows a turn about it |
+//! | `helical` | a slide along z, coupled to a turn about it |
 //!
-//! The first axis is where the table puts it. From one axis to the next the frame is turned by γ = α = 90°, which
-//! puts z where x was: three such steps lead back to where they started, and a spherical joint is far from the
-//! positions at which its first and last axes are parallel. The bodies between the axes have no mass, and the last
-//! axis, which moves the body behind the joint, has the joint's name: a universal joint `cross` has the axes
-//! `cross_1` and `cross`. A helical joint has one variable, that of its turn, and what a joint of one axis can have.
+//! The first axis is at the place of the table. Between successive axes the frame rotates by
+//! γ = α = 90°, which puts z where x was. Three such rotations are the identity, and a spherical
+//! joint is far from positions with parallel first and last axes. The bodies between the axes have
+//! no mass. The last axis, which moves the body of the joint, has the joint's name: a universal
+//! joint `cross` has the axes `cross_1` and `cross`. A helical joint has one variable, that of its
+//! turn, and all properties of a joint with one axis.
 
 use crate::diagnostic::Code;
 use crate::robot::model::JointKind;
 use crate::toml_text::reader::Item;
 
-/// A word for a joint.
+/// A keyword of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Word {
-    /// A joint of one axis, or none.
+    /// A joint of one axis or none.
     Simple(JointKind),
     Cylindrical,
     Universal,
@@ -30,7 +31,7 @@ pub(crate) enum Word {
     Helical,
 }
 
-/// The words of `type`.
+/// Values of `type`.
 pub(crate) const WORDS: [(&str, Word); 8] = [
     ("revolute", Word::Simple(JointKind::Revolute)),
     ("prismatic", Word::Simple(JointKind::Prismatic)),
@@ -42,7 +43,8 @@ pub(crate) const WORDS: [(&str, Word); 8] = [
     ("helical", Word::Helical),
 ];
 
-/// An axis of a joint: what its name ends with if it is not the last, its kind, and whether the frame is turned before it.
+/// An axis of a joint: suffix of its name unless it is the last, its kind, and whether the frame
+/// rotates before it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis(
     pub(crate) &'static str,
@@ -51,7 +53,7 @@ pub(crate) struct Axis(
 );
 
 impl Word {
-    /// The axes of a joint of several.
+    /// The axes of a joint with several.
     pub(crate) const fn axes(self) -> &'static [Axis] {
         use JointKind::{Fixed, Prismatic, Revolute};
         match self {
@@ -73,7 +75,7 @@ impl Word {
         }
     }
 
-    /// Kind of the joint that the table's own keys describe: the first axis.
+    /// Kind of the joint described by the table's own keys: the first axis.
     pub(crate) fn first(self) -> JointKind {
         match self {
             Self::Simple(kind) => kind,
@@ -84,18 +86,18 @@ impl Word {
         }
     }
 
-    /// Kind of the joint whose body the next one starts from.
+    /// Kind of the joint whose body carries the next one.
     pub(crate) fn last(self) -> JointKind {
         let last = self.axes().last();
         last.map_or_else(|| self.first(), |axis| axis.1)
     }
 
-    /// How many joints it stands for.
+    /// Number of joints with one axis.
     pub(crate) fn count(self) -> usize {
         self.axes().len().max(1)
     }
 
-    /// Reports what is said of a joint of several axes that only one of one axis can have.
+    /// Reports keys of joints with one axis in a joint with several.
     pub(crate) fn check<'i, 'c: 'i, 't: 'c>(
         self,
         said: impl IntoIterator<Item = &'i Item<'c, 't>>,
@@ -111,7 +113,7 @@ impl Word {
         }
     }
 
-    /// What a joint is called with its article.
+    /// Noun of the joint with its article.
     fn with_article(self) -> &'static str {
         match self {
             Self::Simple(JointKind::Revolute) => "a revolute joint",
@@ -125,7 +127,7 @@ impl Word {
         }
     }
 
-    /// Where the variables of a joint of a name may stand, for whoever wrote one of them in another key.
+    /// Where the variables of a joint may be used, for an error about one in another key.
     pub(crate) fn variables(self, name: &str) -> String {
         let own = self.with_article();
         let key = match self {

@@ -1,4 +1,4 @@
-//! Errors of chains: bodies that are not there, chains that join nothing, a skeleton in the wrong place.
+//! Errors of chains: unknown bodies, chains that connect nothing, misplaced skeletons.
 
 use super::{good, listed};
 use crate::BodyIndex;
@@ -91,7 +91,7 @@ fn chains_on_chains() {
                     their places, so a body that carries a chain or a branch stands in the skeleton, or in a \
                     chain or branch that is placed before";
     assert!(errors[0].ends_with(expected), "{errors:?}");
-    // Of two chains that name each other one is not there yet.
+    // Of two chains that refer to each other, one is not placed yet.
     let both = two_rods("body = \"rod.1\"", "body = \"fore\"");
     let turned = both.replacen(
         "[leg.rod.end]\nbody = \"fore\"",
@@ -123,7 +123,7 @@ fn branches_on_chains() {
     let own = crate::independent_joints(&description.legs).into_iter();
     let names: Vec<String> = own.map(|(name, _)| name).collect();
     assert_eq!(names, ["upper", "fore", "hand.grip"]);
-    // A tree without a body to stand on is no branch.
+    // A tree that is not on a body is no branch.
     let errors = listed(&with_hand("at = [0, 0, 0]"));
     assert!(
         errors[0].contains("one leg without an end, and others only on bodies of chains"),
@@ -154,7 +154,7 @@ fn branches_in_the_wrong_place() {
         errors[0].contains("the branch `hand` can't stand or end on a body of its own"),
         "{errors:?}"
     );
-    // Without the arm nothing is there that the others hang on.
+    // Without the arm the bodies of the others are missing.
     let (head, rest) = text.split_once("[leg.arm]").expect("an arm");
     let (_, legs) = rest.split_once("[leg.rod]").expect("a rod");
     let alone = format!("{head}[leg.rod]{legs}")
@@ -167,7 +167,7 @@ fn branches_in_the_wrong_place() {
     );
 }
 
-/// Of several legs parameters have their leg's name behind them, by which no payload is known.
+/// With several legs, parameter names contain the leg, so a payload is not recognised.
 #[test]
 fn a_skeleton_carries_no_payload() {
     let fixed = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n[leg.rod]";
@@ -210,7 +210,7 @@ fn skeletons_in_the_wrong_place() {
     let expected = "26:8 the skeleton `arm` is not placed first; its joints are the robot's coordinates: put \
                     its [[place]] before those of chains and branches";
     assert_eq!(errors, [expected]);
-    // A platform leaves no room for a skeleton.
+    // A robot with a platform has no skeleton.
     let errors = listed(&text.replace("[leg.arm]", "[platform]\nmotion = \"planar\"\n[leg.arm]"));
     assert!(
         errors[1].contains("there is no skeleton with a body `fore`"),
@@ -220,7 +220,7 @@ fn skeletons_in_the_wrong_place() {
         errors[0].contains("the leg `arm` has no end on the platform"),
         "{errors:?}"
     );
-    // One leg alone is no chain.
+    // A single leg is no chain.
     let (alone, _) = text
         .split_once("[[place]]\nname = \"rod\"")
         .expect("two places");

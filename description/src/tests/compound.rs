@@ -1,11 +1,11 @@
-//! Joints of several axes are what is otherwise written axis by axis.
+//! Joints of several axes equal sequences of joints with one axis.
 
 use super::{good, listed};
 use crate::{Joint, JointKind};
 use overact_core::StandardParameter;
 use overact_exact::{Angle, Number};
 
-/// A leg of one joint of a type, with more keys, between a turn and a slide.
+/// A leg with one joint of a type, with additional keys, between a turn and a slide.
 fn leg(word: &str, keys: &str) -> String {
     format!(
         r#"name = "Arm"
@@ -27,7 +27,7 @@ shape = "arm"
     )
 }
 
-/// The axes of a leg, written one by one.
+/// A leg with explicit axes.
 fn written(axes: &str) -> String {
     let text = leg("fixed", "");
     let (before, after) = (
@@ -40,7 +40,7 @@ fn written(axes: &str) -> String {
     format!("{}{axes}\n{}", &text[..before], &text[after..])
 }
 
-/// What makes a joint, without where it is written.
+/// Data of a joint without its location.
 type Made = (
     String,
     JointKind,
@@ -64,7 +64,7 @@ fn made(text: &str) -> Vec<Made> {
     good(text).legs[0].joints.iter().map(of_joint).collect()
 }
 
-/// A further axis in the x direction of the one before.
+/// Another axis in the x direction of the previous one.
 fn axis(name: &str, kind: &str, parameters: &str) -> String {
     format!(
         "[[leg.arm.joint]]\nname = \"{name}\"\ntype = \"{kind}\"\ngamma = \"90 deg\"\nalpha = \"90 deg\"\n{parameters}\n"
@@ -121,7 +121,7 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
 /// Name, kind, variable and motor of an axis.
 type Axis = (String, JointKind, Vec<(usize, f64)>, bool);
 
-/// What joint 1 of the leg is, a slide, with its follow-up: variables of both, and whether they are driven.
+/// Joint 1 of the leg, a slide, and the next one: their variables, and whether they are driven.
 fn screw(keys: &str) -> Vec<Axis> {
     let of_joint = |joint: &Joint| {
         let variable = joint
@@ -165,7 +165,7 @@ fn a_helical_joint_is_a_slide_that_follows_a_turn() {
         expected(lead, true)
     );
     assert_eq!(screw("pitch = \"-0.8 mm/rad\""), expected(-0.0008, false));
-    // It has one variable, and what a joint of one axis can have.
+    // It has one variable, and all properties of a joint with one axis.
     let torques =
         "actuated = true\nspring = \"q\"\nstribeck = \"0.1 rad/s\"\nknown = \"1 N m * cos(q)\"";
     let legs = good(&leg("helical", &format!("pitch = \"5 mm\"\n{torques}"))).legs;

@@ -1,6 +1,6 @@
-//! `robots/README.md` documents every key that the reader knows, and no other.
+//! `robots/README.md` documents exactly the keys that the reader knows.
 //!
-//! The reader itself is asked: to a key that it does not know it answers with those that it does.
+//! The known keys come from the reader: an unknown key is answered with a list of them.
 
 use super::listed;
 use crate::diagnostic::Source;
@@ -66,7 +66,7 @@ fundamental = 1
 terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
-/// Headings, in the order of the unknown keys, and what stands before the keys there.
+/// Headings, in the order of the unknown keys, and the text before the keys there.
 const SECTIONS: [(&str, &str); 19] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
@@ -100,7 +100,7 @@ fn documentation() -> String {
     fs::read_to_string(folder("../robots/README.md")).expect("the documentation")
 }
 
-/// The keys that the reader knows in each of the tables.
+/// The known keys of each table.
 fn known() -> Vec<Vec<String>> {
     let errors = listed(UNKNOWN);
     let keys = |index: usize| {
@@ -112,7 +112,7 @@ fn known() -> Vec<Vec<String>> {
     (0..SECTIONS.len()).map(keys).collect()
 }
 
-/// The lines of a section, without those of sections inside of it.
+/// The lines of a section, without its subsections.
 fn section<'t>(text: &'t str, heading: &str) -> Vec<&'t str> {
     let mut lines = text.lines().skip_while(|line| *line != heading);
     assert!(lines.next().is_some(), "no section {heading}");
@@ -127,7 +127,7 @@ fn rows(text: &str, heading: &str) -> BTreeSet<String> {
             .map(|(key, _)| key.to_owned())
     };
     let lines = section(text, heading);
-    // What stands under `| motion |` or `| symbols |` are values, not keys.
+    // The tables under `| motion |` or `| symbols |` contain values, not keys.
     let header = |line: &&str| line.starts_with("| ") && !line.starts_with("| `");
     let mut is_keys = false;
     let mut keys = BTreeSet::new();
@@ -148,7 +148,7 @@ fn every_key_is_documented_and_no_other() {
         let (heading, before) = section;
         let rows = rows(&text, heading);
         for key in &keys {
-            // A table of its own has a section instead.
+            // A table key has a section instead.
             let opening = format!("[{key}");
             let has_section = before.is_empty()
                 && headings.iter().any(|line| {
@@ -172,11 +172,11 @@ fn every_key_is_documented_and_no_other() {
     }
 }
 
-/// A table that the test above does not know of would be one whose keys nobody has to document.
+/// All tables are in the test above; keys of other tables would not have to be documented.
 #[test]
 fn no_table_is_forgotten() {
     let mut known: BTreeSet<String> = known().into_iter().flatten().collect();
-    // Coordinates of homes stand in the table of motions; a file of parameters is no description.
+    // Coordinates of homes are in the table of motions; a file of parameters is no description.
     known.extend(
         [
             "x",
@@ -257,7 +257,7 @@ fn every_word_of_a_value_is_documented() {
     }
 }
 
-/// Pictures are there, and the first example is a description.
+/// Pictures exist, and the first example is a description.
 #[test]
 fn pictures_exist_and_the_first_example_is_valid() {
     let text = documentation();

@@ -109,7 +109,7 @@ fn expressions() {
             "gamma = \"90°\"",
             "6:12 unexpected character `°` in an expression; write degrees as `deg`",
         ),
-        // The place inside of a string with escapes is unknown.
+        // The location inside a string with escapes is unknown.
         (
             "d = \"\\u0031 +\"",
             "6:5 the expression ends where a value is expected",
@@ -148,7 +148,7 @@ fn types_and_dimensions() {
         ),
     ];
     for (keys, expected) in cases {
-        // The helper's own `actuated` is in the way of the last case.
+        // The helper's own `actuated` conflicts with the last case.
         let text = single("", keys);
         let text = if keys.starts_with("actuated") {
             text.replacen("actuated = true\n", "\n", 1)

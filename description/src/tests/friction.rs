@@ -1,4 +1,4 @@
-//! Friction beside the symmetric kind, torques that are known, and what is wrong with them.
+//! Asymmetric friction, known torques, and their errors.
 
 use super::{good, listed, single};
 use overact_core::StandardParameter as P;
@@ -14,7 +14,7 @@ fn friction_by_direction_takes_the_place_of_the_symmetric() {
     assert_eq!(joint.parameters, own);
     let velocity = joint.stribeck.expect("a velocity").value();
     assert!((velocity - 3_f64.to_radians()).abs() < 1e-15);
-    // A part of it may stand beside the symmetric kind: the columns are independent.
+    // Parts of it may be combined with symmetric friction: the columns are independent.
     let robot = good(&single(
         "",
         "parameters = [\"fv\", \"fs\", \"fv_pos\", \"fs_neg\"]",

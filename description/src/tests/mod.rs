@@ -1,4 +1,4 @@
-//! Tests of whole descriptions; each kind of error is shown as its reader sees it.
+//! Tests of whole descriptions; each kind of error is shown as rendered for its reader.
 
 mod chains;
 mod compound;
@@ -15,7 +15,7 @@ mod values;
 use super::{Description, parse};
 use crate::diagnostic::{Diagnostics, Source};
 
-/// A robot of one revolute joint, whose joint and root can be added to.
+/// A robot of one revolute joint, with additional keys for the root and the joint.
 fn single(root: &str, joint: &str) -> String {
     format!(
         "name = \"Arm\"\n{root}\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n{joint}\n\n\
@@ -29,7 +29,7 @@ fn parse_text(text: &str) -> (Source, Result<Description, Diagnostics>) {
     (source, result)
 }
 
-/// The description, which must be good.
+/// The description, which has to be valid.
 fn good(text: &str) -> Description {
     let (source, result) = parse_text(text);
     match result {

@@ -1,4 +1,4 @@
-//! Motors that turn several joints, and logs in their coordinates.
+//! Motors of several joints, and logs in their coordinates.
 
 use super::{good, listed};
 
@@ -121,7 +121,7 @@ fn a_slip_in_one_motor_is_told_alone() {
         assert_eq!(all.len(), 1, "{slip}: {all:#?}");
         assert!(all[0].contains(expected), "{all:#?}");
     }
-    // A joint that is made fixed and stays actuated has no variable, which is not told once more.
+    // A fixed joint that stays actuated has no variable, which is not reported again.
     let fixed = arm(BOTH).replacen("\"revolute\"", "\"fixed\"", 1);
     let all = listed(&fixed);
     assert_eq!(all, ["4:12 a fixed joint cannot be actuated"]);

@@ -50,7 +50,7 @@ fn the_dualv_is_table_1() {
     assert_eq!(end.rotation[2], degrees("180"));
 }
 
-/// At home every leg must reach its platform point: rough values, rough agreement.
+/// At home every leg has to reach its platform point roughly.
 #[test]
 fn the_dualv_is_nearly_closed_at_home() {
     for (index, leg) in good(DUALV).legs.iter().enumerate() {

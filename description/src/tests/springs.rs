@@ -1,4 +1,4 @@
-//! Springs of joints: formulas, units of their coefficients, and what is wrong with them.
+//! Springs of joints: formulas, units of their coefficients, and errors.
 
 use super::{good, listed, single};
 use crate::{Formula, Spring};
@@ -35,7 +35,7 @@ fn formulas_have_their_values_and_units() {
         assert!((found - value).abs() < 1e-14, "{text}: {found}");
         assert_eq!(spring.unit, unit, "{text}");
     }
-    // What is linear stays so, and exact.
+    // Linear formulas stay linear and exact.
     assert!(matches!(spring("2*q - 1").formula, Formula::Linear { .. }));
 }
 

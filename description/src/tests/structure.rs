@@ -21,7 +21,7 @@ fn names_of_robots_and_constants() {
         "3:1 a constant cannot be named `g`",
         "4:1 a constant cannot be named `q_x`",
         "5:1 a constant cannot be named `sin`",
-        // What depends on a wrong constant is not wrong itself.
+        // Dependents of a wrong constant are not reported.
         "6:6 unknown name `c`; known here: g, q_x, sin",
     ];
     assert_eq!(constants, expected);
@@ -168,7 +168,7 @@ fn one_error_for_all_placements() {
     assert!(found[0].contains("`d`: expected a length (m), found an angle (180 deg)"));
 }
 
-/// Whatever is cut off or struck out, the answer is a description or a list of errors.
+/// Any damaged text gives a description or a list of errors.
 #[test]
 fn damaged_files_do_no_harm() {
     let whole = include_str!("../../../robots/dualv.toml");
@@ -187,7 +187,7 @@ fn damaged_files_do_no_harm() {
     }
 }
 
-/// The examples of the manual are good, too.
+/// The examples of the manual are valid, too.
 #[test]
 fn the_manual_has_a_good_example() {
     let manual = include_str!("../../../robots/README.md");

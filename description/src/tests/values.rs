@@ -4,7 +4,7 @@ use super::{good, listed, single};
 use crate::*;
 use overact_exact::{Angle, Number, Ratio};
 
-/// θ's constant part, of a joint at `q + expression`.
+/// Constant part of θ for a joint at `q + expression`.
 fn angle(constants: &str, expression: &str) -> Angle {
     let root = format!("[constants]\n{constants}\n");
     let robot = good(&single(&root, &format!("gamma = \"{expression}\"")));

@@ -1,4 +1,4 @@
-//! A walk over the TOML text that collects every error with its location.
+//! Traversal of the TOML text that collects all errors with their locations.
 
 pub(crate) mod place;
 pub(crate) mod reader;

@@ -1,16 +1,17 @@
-//! Where a key stands in a description, for errors that are found after it was read.
+//! Location of a key in a description, for errors that are found after parsing.
 
 use crate::diagnostic::{Source, Span};
 use toml::de::{DeTable, DeValue};
 
-/// A part of a path: a key, or the number of an element.
+/// A part of a path: a key, or the index of an element.
 enum Part<'p> {
     Key(&'p str),
     Element(usize),
 }
 
-/// The place of a value by its path, such as `experiment.run[1].terms[0].harmonic`; where the text
-/// leaves it out, that of the table or list around it.
+/// Location of a value by its path, such as `experiment.run[1].terms[0].harmonic`.
+///
+/// For a missing value it is that of the table or list around it.
 #[must_use]
 pub fn place(source: &Source, path: &str) -> Option<Span> {
     let (document, _) = DeTable::parse_recoverable(&source.text);

@@ -1,7 +1,7 @@
-//! A walk over a TOML document that notes every error and goes on.
+//! Traversal of a TOML document that records errors and continues.
 //!
-//! A reader asks a [`Table`] for its keys and an [`Item`] for a type; what is missing, of the wrong
-//! type or left over is reported with its place, and `None` is the answer.
+//! A reader requests keys of a [`Table`] and types of an [`Item`]. Missing, wrong or unused keys
+//! are reported with their location, and the result is `None`.
 
 use crate::diagnostic::Spanned;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 pub(crate) struct Context<'t> {
     source: &'t Source,
     errors: RefCell<Diagnostics>,
-    /// What may not be meant, though it can be read.
+    /// Warnings about text that is probably not intended.
     doubts: RefCell<Vec<Spanned<String>>>,
 }
 
@@ -29,8 +29,9 @@ impl<'t> Context<'t> {
         self.errors.borrow_mut().push(diagnostic);
     }
 
-    /// Reports an error unless its place has one: a leg's expression is evaluated once for every
-    /// placement, and one message is enough.
+    /// Reports an error unless there is one at its location.
+    ///
+    /// A leg's expression is evaluated for every placement, and one message is enough.
     pub(crate) fn report_once(&self, diagnostic: Diagnostic) {
         let known = diagnostic
             .span
@@ -41,7 +42,7 @@ impl<'t> Context<'t> {
         }
     }
 
-    /// Notes what may not be meant, once for a place.
+    /// Records a warning, once per location.
     pub(crate) fn doubt(&self, what: String, span: &Span) {
         let mut doubts = self.doubts.borrow_mut();
         if !doubts.iter().any(|known| known.span == *span) {
@@ -49,14 +50,14 @@ impl<'t> Context<'t> {
         }
     }
 
-    /// What may not be meant, in the order of the text.
+    /// The warnings, in order of the text.
     pub(crate) fn doubts(&self) -> Vec<Spanned<String>> {
         let mut doubts = self.doubts.borrow().clone();
         doubts.sort_by_key(|doubt| doubt.span.start);
         doubts
     }
 
-    /// Whether no error is known.
+    /// Whether there is no error.
     pub(crate) fn is_clean(&self) -> bool {
         self.errors.borrow().is_empty()
     }
@@ -74,9 +75,9 @@ impl<'t> Context<'t> {
 pub(crate) struct Table<'c, 't> {
     pub(crate) context: &'c Context<'t>,
     entries: &'c DeTable<'t>,
-    /// Where its errors are shown if no key is their place.
+    /// Location of errors that are not at a key.
     pub(crate) span: Span,
-    /// What it is called, for instance "the table `[platform]`".
+    /// Name of the table in messages, such as "the table `[platform]`".
     what: String,
     known: RefCell<Vec<String>>,
 }
@@ -87,7 +88,7 @@ pub(crate) struct Item<'c, 't> {
     pub(crate) context: &'c Context<'t>,
     pub(crate) value: &'c DeValue<'t>,
     pub(crate) span: Span,
-    /// Place and name of the key that holds it.
+    /// Name and location of its key.
     pub(crate) key: Spanned<String>,
 }
 
@@ -122,7 +123,7 @@ impl<'c, 't> Table<'c, 't> {
         })
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub(crate) fn require(&self, key: &str, help: &str) -> Option<Item<'c, 't>> {
         let item = self.get(key);
         if item.is_none() {
@@ -133,7 +134,7 @@ impl<'c, 't> Table<'c, 't> {
         item
     }
 
-    /// All keys with their values, in the order of the text; none is unknown then.
+    /// All keys with their values, in order of the text; all count as known.
     pub(crate) fn items(&self) -> Vec<Item<'c, 't>> {
         let item = |(key, value): (&'c toml::Spanned<_>, &'c toml::Spanned<DeValue<'t>>)| {
             let name: &std::borrow::Cow<'_, str> = key.get_ref();
@@ -152,7 +153,7 @@ impl<'c, 't> Table<'c, 't> {
         items
     }
 
-    /// Keys that nobody asked for, in the order of the text.
+    /// Keys that were not requested, in order of the text.
     pub(crate) fn unread(&self) -> Vec<Item<'c, 't>> {
         let known = self.known.borrow().clone();
         let mut items = self.items();
@@ -161,7 +162,7 @@ impl<'c, 't> Table<'c, 't> {
         items
     }
 
-    /// Reports every key that nobody asked for.
+    /// Reports all keys that were not requested.
     pub(crate) fn finish(&self) {
         for item in self.unread() {
             let known = self.known.borrow();
@@ -182,7 +183,7 @@ impl<'c, 't> Table<'c, 't> {
     }
 }
 
-/// "a string" and so on.
+/// Name of a type: "a string" and so on.
 fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",
@@ -200,7 +201,7 @@ impl<'c, 't> Item<'c, 't> {
         Diagnostic::new(code, message, self.span.clone())
     }
 
-    /// Reports that another type is expected.
+    /// Reports a wrong type.
     pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
         let found = type_name(self.value);
         let message = format!("`{}`: expected {expected}, found {found}", self.key.value);
@@ -248,7 +249,7 @@ impl<'c, 't> Item<'c, 't> {
         value.ok()
     }
 
-    /// One of a few words.
+    /// One of a few keywords.
     pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<Spanned<T>> {
         let text = self.string()?;
         let found = choices.iter().find(|(name, _)| *name == text.value);
@@ -299,7 +300,7 @@ impl<'c, 't> Item<'c, 't> {
     }
 
     pub(crate) fn strings(&self) -> Option<Vec<Spanned<String>>> {
-        // Every element is looked at, so that every wrong one is reported.
+        // All elements are read, so that each error is reported.
         let strings: Vec<_> = self.list()?.iter().map(Self::string).collect();
         strings.into_iter().collect()
     }
@@ -308,7 +309,7 @@ impl<'c, 't> Item<'c, 't> {
         self.value.is_table()
     }
 
-    /// The value as a table; `what` is its name for messages.
+    /// The value as a table; `what` is its name in messages.
     pub(crate) fn table(&self, what: impl Into<String>) -> Option<Table<'c, 't>> {
         let DeValue::Table(entries) = self.value else {
             return self.mismatch("a table");

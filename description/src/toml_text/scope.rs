@@ -1,4 +1,4 @@
-//! The names that expressions may use, and typed values of expressions.
+//! Names in expressions, and typed values of expressions.
 
 use crate::diagnostic::Spanned;
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -14,7 +14,7 @@ use toml::de::DeValue;
 /// Named constants and, inside a joint's expression, joint variables.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scope {
-    /// A value of `None` is one that could not be evaluated.
+    /// Named values; `None` for one that could not be evaluated.
     entries: Vec<(String, Option<Value>)>,
 }
 
@@ -32,11 +32,11 @@ impl Names for Scope {
     }
 }
 
-/// Constants of a description, at most: each name is looked for among all before it.
+/// Largest number of constants of a description, which are searched linearly.
 const MOST_CONSTANTS: usize = 2_000;
 
 impl Scope {
-    /// The constants of `[constants]`, each of which may use those before it.
+    /// The constants of `[constants]`, each of which may use earlier ones.
     pub(crate) fn constants(table: &Table<'_, '_>) -> Self {
         let mut scope = Self::default();
         let items = table.items();
@@ -54,7 +54,7 @@ impl Scope {
         scope
     }
 
-    /// All constants but angles, with their values in SI units.
+    /// All constants except angles, in SI units.
     pub(crate) fn values(&self) -> Vec<(String, f64)> {
         let number = |(name, value): &(String, Option<Value>)| match value.as_ref()?.scalar {
             Scalar::Number(number) => Some((name.clone(), number.value())),
@@ -63,7 +63,7 @@ impl Scope {
         self.entries.iter().filter_map(number).collect()
     }
 
-    /// The names that stand for no joint.
+    /// The names that are not joint variables.
     pub(crate) fn without_variables(&self) -> Self {
         let holds = |value: &Option<Value>| value.as_ref().is_some_and(|v| !v.terms.is_empty());
         let entries = self.entries.iter().filter(|(_, value)| !holds(value));
@@ -81,7 +81,7 @@ impl Scope {
     }
 }
 
-/// Why a name cannot be that of a constant.
+/// Why a name is invalid for a constant.
 pub(crate) fn name_problem(name: &str) -> Option<&'static str> {
     let starts_well = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if !starts_well || !is_word(name) {
@@ -142,7 +142,7 @@ impl Item<'_, '_> {
         self.kept(outcome)
     }
 
-    /// What was evaluated, or nothing after its fault is reported.
+    /// The result, or `None` after its fault is reported.
     fn kept<Q>(&self, outcome: Result<Q, Failure>) -> Option<Q> {
         match outcome {
             Ok(value) => Some(value),
@@ -157,7 +157,7 @@ impl Item<'_, '_> {
         }
     }
 
-    /// The place in the text of bytes of a string, if the string has no escapes; else of all of it.
+    /// Location of bytes of a string, if the string has no escapes; otherwise of all of it.
     fn inner_span(&self, span: &Span) -> Span {
         let (DeValue::String(text), raw) = (self.value, self.context.text(&self.span)) else {
             return self.span.clone();
@@ -176,7 +176,7 @@ impl Item<'_, '_> {
         }
     }
 
-    /// A value without joint variables whose dimension fits.
+    /// A value without joint variables and with a fitting dimension.
     pub(crate) fn quantity(&self, expected: Dimension, scope: &Scope) -> Option<Value> {
         let value = self.evaluate(scope)?;
         if !value.terms.is_empty() {
@@ -225,7 +225,7 @@ impl Item<'_, '_> {
         self.bounded(expected, scope, |v| v > 0.0, "greater than 0")
     }
 
-    /// A number that is not negative.
+    /// A nonnegative number.
     pub(crate) fn not_negative(&self, expected: Dimension, scope: &Scope) -> Option<f64> {
         self.bounded(expected, scope, |v| v >= 0.0, "at least 0")
     }
@@ -267,7 +267,7 @@ impl Item<'_, '_> {
     }
 }
 
-/// A fault of all of an expression.
+/// A fault of the whole expression.
 fn whole(fault: Fault) -> Failure {
     Failure::Fault(fault, 0..usize::MAX)
 }

@@ -1,10 +1,10 @@
-//! Which vectors a function's legs are computed in.
+//! Choice of the vectors for a function's legs.
 
 #[cfg(dispatch)]
 use super::detected;
 use super::{Few, Many, SideBySide, Vector as _};
 
-/// Whether four legs and more run side by side.
+/// Whether at least four lanes are available.
 #[inline(always)]
 #[must_use]
 pub fn four() -> bool {
@@ -15,7 +15,7 @@ pub fn four() -> bool {
     Few::WIDTH >= 4
 }
 
-/// Runs a function of at most four legs: of so few a wider register would be half empty.
+/// Runs a function of at most four legs, for which a wider register would be half empty.
 #[inline(always)]
 pub fn few<W: SideBySide>(work: W) -> W::Output {
     #[cfg(dispatch)]
@@ -25,7 +25,7 @@ pub fn few<W: SideBySide>(work: W) -> W::Output {
     work.run::<Few>(())
 }
 
-/// Runs a function of any number of legs, as many at once as the processor's registers hold numbers.
+/// Runs a function of any number of legs in the widest registers of the processor.
 #[inline(always)]
 pub fn many<W: SideBySide>(work: W) -> W::Output {
     #[cfg(dispatch)]

@@ -1,4 +1,4 @@
-//! Vectors of AVX2 and AVX-512 in a build for any x86-64, where the processor has them.
+//! Vectors of AVX2 and AVX-512 in a build for any x86-64, if the processor has them.
 
 use super::{SideBySide, Vector};
 use crate::math;
@@ -6,16 +6,16 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use pulp::x86::{V3, V4};
 use pulp::{NullaryFnOnce, Simd, bytemuck, f64x4, f64x8};
 
-/// A function, and what shows that the processor has the vectors.
+/// A function, and the proof that the processor has the vectors.
 struct By<W, P>(W, P);
 
 macro_rules! vector {
     ($name:ident, $proof:ident, $vector:ident, $width:literal, $found:ident, $run:ident) => {
-        /// A vector, beside what shows that the processor has such.
+        /// A vector with the proof that the processor supports it.
         #[derive(Clone, Copy)]
         pub(super) struct $name($proof, $vector);
 
-        /// What shows that the processor has such vectors, if it has.
+        /// The proof that the processor has such vectors, if it has.
         #[inline(always)]
         pub(super) fn $found() -> Option<$proof> {
             $proof::try_new()

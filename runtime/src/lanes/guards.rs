@@ -1,31 +1,33 @@
-//! What [`guard`] checks, in every lane. Of several legs that fail the first is told, as where legs are computed one
-//! after the other, though another one may have failed in an earlier condition.
+//! The checks of [`guard`] in every lane.
+//!
+//! If several legs fail, the first leg is reported, as in code that computes legs one after the
+//! other. Another leg may have failed in an earlier condition.
 
 use super::{OfLegs, Turn, Vector, row};
 use crate::{Error, guard};
 
-/// The first leg of a turn that fails, and how.
+/// The first failing leg, with its error.
 #[derive(Debug, Default)]
 pub struct Failed(Option<(usize, Error)>);
 
 impl Failed {
-    /// None yet.
+    /// No failure.
     #[inline(always)]
     #[must_use]
     pub const fn none() -> Self {
         Self(None)
     }
 
-    /// Tells of the leg that failed.
+    /// Returns the error of the leg that failed.
     ///
     /// # Errors
-    /// What it failed in.
+    /// The error of that leg.
     #[inline(always)]
     pub fn told(self) -> Result<(), Error> {
         self.0.map_or(Ok(()), |(_, error)| Err(error))
     }
 
-    /// Takes note of the first lane that fails, unless a leg before it has.
+    /// Records the first lane that fails, unless an earlier leg has failed.
     #[cold]
     #[inline(never)]
     fn note<V: Vector, const LEGS: usize>(
@@ -48,8 +50,11 @@ impl Failed {
     }
 }
 
-/// The radicand of the legs' inverse kinematics must be neither negative nor lost in rounding; `home` are its values at
-/// home. Else, and for NaN, [`Error::OutOfReach`] or [`Error::SingularLeg`].
+/// Checks that the radicands of the legs' inverse kinematics are neither negative nor dominated by
+/// rounding.
+///
+/// `home` are their values at home. Otherwise, and for NaN, [`Error::OutOfReach`] or
+/// [`Error::SingularLeg`].
 #[inline(always)]
 pub fn reach<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
@@ -71,7 +76,7 @@ pub fn reach<V: Vector, const LEGS: usize>(
     }
 }
 
-/// A value of the legs must not be larger than `most`. Else, and for NaN, [`Error::Overflow`].
+/// Checks that values of the legs are at most `most`. Otherwise, and for NaN, [`Error::Overflow`].
 #[inline(always)]
 pub fn size<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
@@ -86,8 +91,9 @@ pub fn size<V: Vector, const LEGS: usize>(
     }
 }
 
-/// The legs' determinants must not vanish; `home` are their magnitudes at home.
-/// Else, and for NaN, [`Error::SingularLeg`].
+/// Checks that the legs' determinants do not vanish; `home` are their magnitudes at home.
+///
+/// Otherwise, and for NaN, [`Error::SingularLeg`].
 #[inline(always)]
 pub fn leg<V: Vector, const LEGS: usize>(
     failed: &mut Failed,
@@ -109,8 +115,9 @@ pub fn leg<V: Vector, const LEGS: usize>(
     }
 }
 
-/// What a pose misses of what the legs allow must be small: at most `within` (m, rad).
-/// Else, and for NaN, [`Error::NotClosed`].
+/// Checks that the closure errors of a pose are at most `within` (m, rad).
+///
+/// Otherwise, and for NaN, [`Error::NotClosed`].
 #[inline(always)]
 pub fn closed<V: Vector, const LEGS: usize>(
     failed: &mut Failed,

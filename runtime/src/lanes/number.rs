@@ -1,4 +1,4 @@
-//! Functions of lanes; each is that of [`math`] in every lane.
+//! Functions of lanes; each applies that of [`math`] to every lane.
 
 use super::{Lanes, OfLegs, Turn, Vector};
 use crate::math;
@@ -17,7 +17,7 @@ pub fn sign<V: Vector>(velocity: Lanes<V>) -> Lanes<V> {
     Lanes(velocity.0.sign())
 }
 
-/// A value with the sign of a velocity, of the legs of a turn.
+/// A value with the sign of a velocity, for the legs of a batch.
 #[inline(always)]
 #[must_use]
 pub fn signed<V: Vector, const LEGS: usize>(
@@ -28,7 +28,7 @@ pub fn signed<V: Vector, const LEGS: usize>(
     Lanes(value.of_legs(at.1) * velocity.of_legs(at.1).sign())
 }
 
-/// The angle of the direction (x, y), of the legs of a turn.
+/// The angle of the direction (x, y), for the legs of a batch.
 #[inline(always)]
 #[must_use]
 pub fn atan2<V: Vector, const LEGS: usize>(

@@ -1,4 +1,4 @@
-//! Sums, products and quotients of lanes, and of lanes and numbers that all legs share.
+//! Sums, products and quotients of lanes, and of lanes and common numbers.
 
 use super::{Lanes, Vector};
 use core::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,12 +1,12 @@
-//! A function whose legs are computed side by side.
+//! A function whose legs are computed in SIMD lanes.
 
 use super::Vector;
 
-/// A function whose legs are computed side by side, in vectors that are chosen when it runs.
+/// A function whose legs are computed in SIMD lanes, with vectors chosen at run time.
 pub trait SideBySide: Sized {
-    /// What it gives.
+    /// Type of the result.
     type Output;
 
-    /// Computes it in vectors of a kind, which `lanes` shows to be there.
+    /// Runs the function in a type of vectors; `lanes` proves that the processor has them.
     fn run<V: Vector>(self, lanes: V::Proof) -> Self::Output;
 }

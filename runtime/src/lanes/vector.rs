@@ -1,9 +1,9 @@
-//! Vectors of numbers, by how many they hold.
+//! Vectors of numbers by width.
 
 use crate::math;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// As many numbers as a register holds, one of each leg.
+/// A register of numbers, one for each leg.
 pub trait Vector:
     Copy
     + Add<Output = Self>
@@ -12,31 +12,31 @@ pub trait Vector:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What shows that the processor has such vectors; nothing where the build is for such processors alone.
+    /// Proof that the processor has such vectors; empty if the build requires them.
     type Proof: Copy;
 
-    /// How many they are.
+    /// Number of lanes.
     const WIDTH: usize;
 
-    /// What shows that there is such a vector.
+    /// The proof that such a vector exists.
     fn proof(self) -> Self::Proof;
 
     /// The same number in every lane.
     fn all(proof: Self::Proof, number: f64) -> Self;
 
-    /// The number of each lane.
+    /// A vector from a function of the lane.
     fn of(proof: Self::Proof, number: impl FnMut(usize) -> f64) -> Self;
 
-    /// The first numbers of some, if there are enough.
+    /// The first numbers of a slice, if there are enough.
     fn first_of(proof: Self::Proof, numbers: &[f64]) -> Option<Self>;
 
-    /// Puts all numbers in front of some, if there is room for them.
+    /// Writes all numbers to the front of a slice, if there is room for them.
     fn put(self, numbers: &mut [f64]);
 
     /// The number of a lane.
     fn lane(&self, lane: usize) -> f64;
 
-    /// Whether something holds in all lanes.
+    /// Whether a condition holds in all lanes.
     fn every(&self, holds: impl FnMut(f64) -> bool) -> bool;
 
     /// The square roots.
@@ -51,7 +51,7 @@ pub trait Vector:
     fn sin_cos_all<const N: usize>(angles: [Self; N]) -> [(Self, Self); N];
 }
 
-/// One number, in builds without vectors and in those that are not optimised.
+/// One number, for builds without vectors and without optimisation.
 impl Vector for f64 {
     type Proof = ();
     const WIDTH: usize = 1;
@@ -179,7 +179,7 @@ vector!(f64x4, 4);
 #[cfg(all(vectors, target_feature = "avx512f"))]
 vector!(f64x8, 8);
 
-/// The most numbers that a register holds.
+/// The widest register.
 #[cfg(all(vectors, target_feature = "avx512f"))]
 pub type Many = wide::f64x8;
 /// At most four numbers.
@@ -191,6 +191,6 @@ pub type Few = wide::f64x2;
 /// One number.
 #[cfg(not(vectors))]
 pub type Few = f64;
-/// The most numbers that a register holds.
+/// The widest register.
 #[cfg(not(all(vectors, target_feature = "avx512f")))]
 pub type Many = Few;

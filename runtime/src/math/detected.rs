@@ -1,13 +1,14 @@
-//! Sines and cosines of several angles at once in vectors of AVX2, in a build for any x86-64.
+//! Sines and cosines of several angles at once in AVX2 vectors, in a build for any x86-64.
 //!
-//! The method and its numbers are those of [`overact_core::trigonometry`], with fused multiplication and addition: what
-//! follows waits for sines, and has them sooner.
+//! The method and its constants are those of [`overact_core::trigonometry`], with fused
+//! multiply-add, which reduces the latency for code that waits for sines.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 use pulp::x86::V3;
 use pulp::{Simd as _, bytemuck, f64x4, u64x4};
 
-/// Sines and cosines of angles up to [`LARGEST`](overact_core::trigonometry::LARGEST), if the processor has such vectors.
+/// Sines and cosines of angles up to [`LARGEST`](overact_core::trigonometry::LARGEST), if the
+/// processor has AVX2.
 #[inline(always)]
 pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> Option<[(f64, f64); N]> {
     let simd = V3::try_new()?;
@@ -17,7 +18,8 @@ pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> Option<[(f64, f6
     ))
 }
 
-/// Closures and iterators are functions of their own, which are not compiled for such vectors; so there are loops.
+/// Loops, because closures and iterators are separate functions that are not compiled for such
+/// vectors.
 #[inline(always)]
 fn all_of<const N: usize>(simd: V3, angles: &[f64; N]) -> [(f64, f64); N] {
     let mut pairs = [(0.0, 0.0); N];

@@ -1,6 +1,7 @@
-//! The few transcendental functions that generated code calls: those of the standard library with
-//! the feature `std`, those of `libm` with the feature of that name alone. The angles of a whole function have their sines and
-//! cosines from [`sin_cos_all`].
+//! Transcendental functions of generated code.
+//!
+//! They come from the standard library with the feature `std`, and from `libm` with that feature
+//! alone. Sines and cosines of all angles of a function come from [`sin_cos_all`].
 
 #[cfg(any(dispatch, all(test, feature = "dispatch", target_arch = "x86_64")))]
 mod detected;
@@ -56,7 +57,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     }
 }
 
-/// Sign of a velocity as Coulomb friction wants it: -1, 0 or 1 (0 for NaN).
+/// Sign of a velocity for Coulomb friction: -1, 0 or 1 (0 for NaN).
 #[inline]
 #[must_use]
 pub fn sign(velocity: f64) -> f64 {
@@ -65,15 +66,15 @@ pub fn sign(velocity: f64) -> f64 {
 
 /// A value with the sign of a velocity.
 ///
-/// To a processor the sign of a velocity is as good as random. A selection compiles to a branch, and
-/// one that is guessed wrong costs more than ten multiplications; so this is one.
+/// For a processor the sign of a velocity is practically random. A selection compiles to a branch,
+/// and a misprediction costs more than ten multiplications; so this is a multiplication.
 #[inline]
 #[must_use]
 pub fn signed(value: f64, velocity: f64) -> f64 {
     value * sign(velocity)
 }
 
-/// The angle nearest to zero that differs from `angle` by whole turns.
+/// The angle wrapped to the one nearest to zero.
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle: f64) -> f64 {

@@ -1,8 +1,8 @@
-//! Sine and cosine of one angle after the other, in code that is quick at every level of optimisation.
+//! Sines and cosines of single angles, fast at every optimisation level.
 //!
-//! Vector types are worth their registers where every step of theirs is inlined. In builds for size, or without
-//! optimisation, each step is a call, and a dozen angles take microseconds. Here are the same steps on single
-//! numbers, as plain arithmetic without a branch, so that all builds give the same digits.
+//! Vector types are fast only if all of their operations are inlined. In builds for size or without
+//! optimisation, each operation is a call, and a dozen angles take microseconds. Here the same
+//! operations run on scalars without branches, so that all builds give the same digits.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 
@@ -10,7 +10,7 @@ use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 #[inline]
 pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> [(f64, f64); N] {
     let mut pairs = [(0.0, 0.0); N];
-    // Indices rather than iterators, which are calls where nothing is optimised.
+    // Indices instead of iterators, which are calls without optimisation.
     let mut at = 0;
     while at < N {
         pairs[at] = sine_and_cosine(angles[at]);
@@ -21,8 +21,8 @@ pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> [(f64, f64); N] 
 
 /// Sine and cosine of one angle.
 ///
-/// It is a function of this crate and not inlined: a package that is optimised has it so in a build whose
-/// other parts are not, and a function of many angles has its code once.
+/// It is not inlined. So it is optimised with this package, even if the rest of a build is not, and
+/// a function of many angles contains its code once.
 #[inline(never)]
 fn sine_and_cosine(x: f64) -> (f64, f64) {
     let shifted = product_and_sum(x, core::f64::consts::FRAC_2_PI, ROUND);
@@ -35,7 +35,8 @@ fn sine_and_cosine(x: f64) -> (f64, f64) {
     let cosine = product_and_sum(z, -0.5, 1.0);
     let cosine = product_and_sum(z * z, polynomial(z, COSINE), cosine);
     let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    // Odd quadrants exchange sine and cosine. The sum cannot overflow: an angle's bits are below it.
+    // Odd quadrants exchange sine and cosine. The sum cannot overflow: an angle's bits are below
+    // it.
     let exchange = (sine ^ cosine) & 0_u64.wrapping_sub(quadrant & 1);
     let sine = (sine ^ exchange) ^ ((quadrant & 2) << 62);
     let cosine = (cosine ^ exchange) ^ ((quadrant.wrapping_add(1) & 2) << 62);
@@ -50,7 +51,7 @@ fn polynomial(z: f64, terms: [f64; 6]) -> f64 {
     product_and_sum(product_and_sum(product_and_sum(p, z, d), z, e), z, f)
 }
 
-/// a b + c, in one rounding where the processor has an instruction for it, as vectors have it there.
+/// a b + c, with a single rounding on processors with such an instruction, as in vectors.
 #[inline(always)]
 fn product_and_sum(a: f64, b: f64, c: f64) -> f64 {
     #[cfg(all(feature = "std", target_feature = "fma"))]

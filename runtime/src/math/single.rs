@@ -1,17 +1,18 @@
-//! The functions of [`math`](super) for numbers of 32 bits.
+//! The functions of [`math`](super) in single precision.
 //!
-//! A controller whose processor computes with 32 bits only takes hundreds of instructions for each operation of
-//! 64 bits, so that nothing here has any.
+//! On a controller with single precision only, each operation of double precision takes hundreds of
+//! instructions, so there are none here.
 
 use overact_core::trigonometry::single::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
-/// Sine and cosine of an angle in radians, within 2.5 units in the last place up to 8192 rad; beyond it
-/// those of the standard library, or of `libm` without the feature `std`.
+/// Sine and cosine of an angle in radians, within 2.5 units in the last place up to 8192 rad.
 ///
-/// Of four million angles up to 8192 rad the worst is 2.34 units off, at a reduced angle just above 0.25, whose sine
-/// lies below 0.25, so that what rounds the angle counts twice: two of the four subtractions of the reduction round.
-/// The nearest number of 32 bits to the reduced angle would leave 1.54, the polynomial itself is off by 0.1. Less than
-/// 1.5 takes a reduced angle in two parts, and more operations.
+/// Larger angles use the standard library, or `libm` without the feature `std`.
+///
+/// In four million angles the largest error is 2.34 units, at a reduced angle just above 0.25. Its
+/// sine is below 0.25, so the rounding of the angle counts twice: two of the four subtractions of
+/// the reduction round. An exactly rounded reduced angle would give 1.54 units; the error of the
+/// polynomial is 0.1. Less than 1.5 requires a reduced angle in two parts, and more operations.
 #[inline]
 #[must_use]
 pub fn sin_cos(angle: f32) -> (f32, f32) {
@@ -26,7 +27,7 @@ pub fn sin_cos(angle: f32) -> (f32, f32) {
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f32; N]) -> [(f32, f32); N] {
     let mut pairs = [(0.0, 0.0); N];
-    // Indices rather than iterators, which are calls where nothing is optimised.
+    // Indices instead of iterators, which are calls without optimisation.
     let mut at = 0;
     while at < N {
         pairs[at] = sin_cos(angles[at]);
@@ -35,7 +36,7 @@ pub fn sin_cos_all<const N: usize>(angles: [f32; N]) -> [(f32, f32); N] {
     pairs
 }
 
-/// Out of the way of what is usual.
+/// Library functions, kept out of line.
 #[cold]
 #[inline(never)]
 fn library(angle: f32) -> (f32, f32) {
@@ -49,8 +50,9 @@ fn library(angle: f32) -> (f32, f32) {
     }
 }
 
-/// As [`overact_core::trigonometry`] says. A function of this crate, which is not inlined: a package that is
-/// optimised has it so in a build whose other parts are not.
+/// Sine and cosine by the method of [`overact_core::trigonometry`].
+///
+/// It is not inlined, so that it is optimised with this package even if the rest of a build is not.
 #[inline(never)]
 fn reduced(x: f32) -> (f32, f32) {
     let shifted = x * core::f32::consts::FRAC_2_PI + ROUND;
@@ -108,14 +110,14 @@ pub fn sign(velocity: f32) -> f32 {
     f32::from(u8::from(velocity > 0.0)) - f32::from(u8::from(velocity < 0.0))
 }
 
-/// A value with the sign of a velocity; a product, as [`signed`](super::signed) is.
+/// A value with the sign of a velocity; a product, like [`signed`](super::signed).
 #[inline]
 #[must_use]
 pub fn signed(value: f32, velocity: f32) -> f32 {
     value * sign(velocity)
 }
 
-/// The angle nearest to zero that differs from `angle` by whole turns.
+/// The angle wrapped to the one nearest to zero.
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle: f32) -> f32 {

@@ -1,16 +1,15 @@
 //! Sines and cosines of all angles of a function.
 //!
-//! The method and its numbers are those of [`overact_core::trigonometry`]. They are computed in vector
-//! registers where a build is optimised for speed, and one by one in all others; the build script says which.
+//! The method and its constants are those of [`overact_core::trigonometry`]. Builds that are
+//! optimised for speed compute in vector registers, others one by one; the build script decides.
 
 use super::sin_cos;
 use overact_core::trigonometry::LARGEST;
 
-/// Sines and cosines of angles in radians, within 1.6 units in the last place up to 100 rad and 2.3 up to
-/// 10⁵ rad.
+/// Sines and cosines of angles in radians, within 1.6 units in the last place up to 100 rad.
 ///
-/// Angles beyond 10⁵ rad and those that are no numbers take the standard library's functions (`libm`'s
-/// without the feature `std`), and so does an angle that is alone.
+/// The error is 2.3 units up to 10⁵ rad. Larger angles, NaN and single angles use the standard
+/// library (or `libm` without the feature `std`).
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
@@ -30,7 +29,7 @@ pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
 /// Whether all angles are small enough to be reduced.
 #[inline(always)]
 pub(super) fn are_small<const N: usize>(angles: &[f64; N]) -> bool {
-    // One comparison for all: `&` rather than `&&`, for there is nothing to gain from an early end.
+    // One comparison for all: `&` instead of `&&`, because an early exit would save nothing.
     let mut small = true;
     let mut at = 0;
     while at < N {
@@ -40,7 +39,7 @@ pub(super) fn are_small<const N: usize>(angles: &[f64; N]) -> bool {
     small
 }
 
-/// Sines and cosines by the library, out of the way of what is usual.
+/// Sines and cosines by the library, kept out of line.
 #[cold]
 #[inline(never)]
 fn one_by_one<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
@@ -83,7 +82,7 @@ mod tests {
                 }
             }
         }
-        // libm is itself within one unit of the truth.
+        // The error of libm itself is below one unit.
         assert!(worst <= 2.0, "{worst} ulps");
     }
 
@@ -91,7 +90,7 @@ mod tests {
     fn errors_against_128_bits_are_as_stated() {
         use astro_float_num::{BigFloat, Consts, RoundingMode};
         let mut constants = Consts::new().expect("memory");
-        // What a double is off by, without rounding the exact value first.
+        // Error of a double, without rounding the exact value first.
         let off = |found: f64, exact: &BigFloat| {
             let found_exactly = BigFloat::from_f64(found, 128);
             let difference = found_exactly.sub(exact, 128, RoundingMode::ToEven);

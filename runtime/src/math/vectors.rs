@@ -1,8 +1,8 @@
 //! Sines and cosines of several angles at once, in vector registers.
 //!
-//! The method and its numbers are those of [`overact_core::trigonometry`]. Without a branch, four angles
-//! cost little more than one, if the compiler turns every step into one instruction: that is why this stands
-//! in optimised builds alone, and `plain.rs` in the others.
+//! The method and its constants are those of [`overact_core::trigonometry`]. Without branches, four
+//! angles cost little more than one, if each operation compiles to one instruction. So this module
+//! is used in optimised builds only, and `plain.rs` in others.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 use wide::{f64x2, f64x4, u64x2, u64x4};
@@ -12,7 +12,7 @@ use wide::{f64x2, f64x4, u64x2, u64x4};
 pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> [(f64, f64); N] {
     let mut pairs = [(0.0, 0.0); N];
     let mut at = 0;
-    // Three angles left over take the time of four.
+    // Three remaining angles take the time of four.
     while at + 2 < N {
         let (sines, cosines) = four(&core::array::from_fn(|i| lane(angles, at + i)));
         let found = pairs[at..].iter_mut().zip(sines.iter().zip(&cosines));
@@ -27,13 +27,13 @@ pub(super) fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> [(f64, f64); N] 
     pairs
 }
 
-/// An angle, or zero beyond the last.
+/// An angle, or zero after the last.
 #[inline(always)]
 fn lane<const N: usize>(angles: &[f64; N], at: usize) -> f64 {
     if at < N { angles[at] } else { 0.0 }
 }
 
-/// A function of as many angles as a vector holds.
+/// Defines a function of as many angles as a vector has lanes.
 macro_rules! sines_and_cosines {
     ($name:ident, $lanes:literal, $float:ident, $bits:ident) => {
         #[doc = concat!("Sines and cosines of ", $lanes, " angles up to those that are reduced.")]

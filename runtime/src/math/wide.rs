@@ -1,9 +1,11 @@
-//! The functions of [`math`](super) for functions that are compiled for wider vectors, too: sines and cosines take these
-//! where the processor has them. A short function would lose more by asking for them than it gains.
+//! The functions of [`math`](super) for functions that are also compiled for wider vectors: sines
+//! and cosines use these if the processor has them. In a short function the detection would cost
+//! more than it saves.
 
 pub use super::{atan2, sign, signed, sin_cos, sqrt};
 
-/// Sines and cosines of angles in radians, as [`sin_cos_all`](super::sin_cos_all), which has the errors.
+/// Sines and cosines of angles in radians, with the accuracy of
+/// [`sin_cos_all`](super::sin_cos_all).
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {

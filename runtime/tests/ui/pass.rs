@@ -1,4 +1,4 @@
-//! A robot in a user's crate, under a name of the user's choice.
+//! A robot in a user's crate, with a name chosen by the user.
 
 use overact::{Model, redundant_robot};
 

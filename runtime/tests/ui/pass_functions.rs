@@ -1,4 +1,4 @@
-//! Only some functions, in a crate that wants everything documented, with derives of its own.
+//! Only some functions, in a crate that requires documentation, with derives of its own.
 #![deny(warnings, missing_docs)]
 
 use overact::redundant_robot;
@@ -7,18 +7,18 @@ use overact::redundant_robot;
 #[derive(Debug, Hash)]
 pub struct Mine;
 
-/// A model, by the functions that it is asked for.
+/// All functions of a model.
 pub mod model {
     #[overact::redundant_robot("descriptions/capitals.toml", functions = ["identification"])]
     pub struct Whole;
 }
 
-/// The facade by way of another crate.
+/// The facade, re-exported by another crate.
 pub mod vendor {
     pub use ::overact as robots;
 }
 
-/// From joints and of base parameters alone, where no crate is called `overact`.
+/// Functions of joints and base parameters only, without a crate called `overact`.
 #[redundant_robot(
     "descriptions/five_bar.toml",
     functions = ["idm_red_platform", "inverse_dynamics"],
@@ -29,7 +29,7 @@ pub mod vendor {
 )]
 pub struct Few;
 
-/// Whether the functions are there, and what they fail with comes from the other path.
+/// Whether the functions exist, with errors from the other path.
 pub fn few() -> Result<(), vendor::robots::Error> {
     let (pose, joints) = (Few::HOME_POSE, Few::HOME_JOINTS);
     let (rest, base) = ([0.0; Few::DOF], [1.0; Few::BASE_PARAMETERS.len()]);

@@ -1,12 +1,12 @@
-//! Robots in scopes where every name of the prelude means something else, without a warning.
+//! Robots in scopes where all names of the prelude have another meaning, without warnings.
 #![no_implicit_prelude]
 #![deny(warnings, missing_docs, nonstandard_style, unused, unused_qualifications)]
 
-/// What a user's module may hold.
+/// A possible module of a user.
 mod hostile {
     #![allow(non_camel_case_types, dead_code)]
 
-    /// An alias as many crates have it.
+    /// An alias that is common in crates.
     pub type Result<T> = ::core::result::Result<T, ()>;
     pub struct Ok;
     pub struct Err;
@@ -36,7 +36,7 @@ pub mod by_attribute {
     pub struct Mine;
 }
 
-/// The attribute on a struct that is called as what the generated code needs.
+/// The attribute on a struct whose name the generated code uses.
 pub mod called_result {
     /// A robot.
     #[::overact::redundant_robot("descriptions/capitals.toml")]

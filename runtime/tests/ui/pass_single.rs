@@ -1,10 +1,10 @@
-//! Robots that compute with numbers of 32 bits, beside the same ones with 64: closed forms, forward kinematics,
+//! Robots in single precision, compared with double precision: closed forms, forward kinematics,
 //! Newton's method on the joints.
 #![deny(warnings, missing_docs)]
 
 use overact::redundant_robot;
 
-/// Of 64 bits.
+/// Double precision.
 pub mod double {
     #[overact::redundant_robot("descriptions/five_bar.toml")]
     pub struct FiveBar;
@@ -23,7 +23,7 @@ pub struct FiveBar;
 )]
 pub struct NewtonPoint;
 
-/// Numbers of 64 bits beside those of 32, with the largest difference that may be between them.
+/// Compares numbers in double and single precision, with the largest difference allowed.
 fn same(double: &[f64], single: &[f32], allowed: f64) {
     assert_eq!(double.len(), single.len());
     for (a, b) in double.iter().zip(single) {

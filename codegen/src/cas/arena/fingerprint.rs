@@ -1,4 +1,5 @@
-//! What a node means: its values at random points of the field and at a real sample point.
+//! Fingerprints: values of expressions at random points of a finite field and at a real sample
+//! point.
 
 use super::super::field::{CIRCLE, Element, canonical, mix};
 use super::super::sample::Sample;
@@ -6,8 +7,9 @@ use super::{Handle, Op, POINTS, Tables};
 use overact_exact::Number;
 use std::ops::{Add, Mul, Neg};
 
-/// The values of an expression at the two random points of the field and at the real one, by which
-/// expressions are told apart.
+/// Values of an expression at the field's two random points and at the real sample point.
+///
+/// Expressions with equal fingerprints are treated as equal (Schwartz 1980, Zippel 1979).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fingerprint {
     pub(crate) image: [Element; POINTS],
@@ -28,7 +30,7 @@ impl Tables {
         self.of(&handle).sample
     }
 
-    /// The magnitude against which rounding of the node's sample is judged.
+    /// Magnitude relative to which rounding of the node's sample is judged.
     pub(super) fn operand_size(&self, op: &Op) -> f64 {
         match op {
             Op::Add(a, b) | Op::Sub(a, b) => self.sample(*a).size().max(self.sample(*b).size()),
@@ -75,7 +77,7 @@ impl Tables {
             let unit = self.symbols[symbol.0 as usize].circle[point];
             let count = factor.numerator().rem_euclid(i128::from(CIRCLE)) as u64;
             let turned = unit.power(count);
-            // A part of an angle is a free angle of its own.
+            // A fraction of an angle is treated as an independent angle.
             result = result
                 * if factor.denominator() == 1 {
                     turned
@@ -97,7 +99,7 @@ impl Tables {
     }
 }
 
-/// A value of a function about which nothing is known but its arguments.
+/// Pseudo-random value of an unknown function, determined by its arguments.
 fn free(tag: u64, arguments: &[Element]) -> Element {
     let bits = arguments.iter().fold(mix(tag), |bits, argument| {
         let (re, im) = argument.parts();
@@ -107,7 +109,7 @@ fn free(tag: u64, arguments: &[Element]) -> Element {
 }
 
 impl Fingerprint {
-    /// That of a constant.
+    /// Fingerprint of a constant.
     pub(crate) fn number(number: Number) -> Self {
         Self {
             image: [number.image(); POINTS],
@@ -120,13 +122,15 @@ impl Fingerprint {
         self.image[0]
     }
 
-    /// Whether both may be the same function: the points of the field say so, or the real one does. It
-    /// finds what is wrong, where [`agrees`](Self::agrees) finds what is right.
+    /// Whether both may be the same function: the field points or the real sample agree.
+    ///
+    /// A necessary condition, used to detect errors; [`agrees`](Self::agrees) is the sufficient
+    /// one.
     pub(crate) fn resembles(&self, other: &Self) -> bool {
         self.image == other.image || self.sample.agrees(other.sample)
     }
 
-    /// Whether both are the same function, as far as all points tell.
+    /// Whether both are the same function: the field points and the real sample agree.
     pub(crate) fn agrees(&self, other: &Self) -> bool {
         self.image == other.image && self.sample.agrees(other.sample)
     }
@@ -146,7 +150,7 @@ impl Fingerprint {
         }
     }
 
-    /// The sign, an odd function: that of the smaller one of ±a is hashed, and the sign put back.
+    /// The sign, hashed from the canonical one of ±a so that it is an odd function.
     pub(crate) fn sign(self) -> Self {
         let sign = |a: Element| {
             let ([key], negative) = canonical([a]);
@@ -159,8 +163,9 @@ impl Fingerprint {
         }
     }
 
-    /// The cosine of a value of which the field does not know how it turns; see
-    /// [`Arena::turn_fingerprints`](super::Arena::turn_fingerprints) for one of which it does.
+    /// Cosine of a value that is not a known angle of the field.
+    ///
+    /// For known angles see [`Arena::turn_fingerprints`](super::Arena::turn_fingerprints).
     pub(crate) fn cosine(self) -> Self {
         Self {
             image: self.image.map(|a| free(4, &[a])),
@@ -168,7 +173,7 @@ impl Fingerprint {
         }
     }
 
-    /// The sine of such a value.
+    /// Sine of a value that is not a known angle of the field.
     pub(crate) fn sine(self) -> Self {
         Self {
             image: self.image.map(|a| free(5, &[a])),

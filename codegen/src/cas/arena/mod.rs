@@ -1,4 +1,4 @@
-//! The graph: nodes, their fingerprints in the field, and the tables that share them.
+//! The expression graph: nodes, their fingerprints, and the tables by which equal nodes are shared.
 
 mod fingerprint;
 mod multiples;
@@ -35,7 +35,7 @@ impl Handle {
         (self.0 >> 1) as usize
     }
 
-    /// Whether the node's negative is meant.
+    /// Whether the handle is the negative of its node.
     #[must_use]
     pub const fn is_negative(self) -> bool {
         self.0 & 1 == 1
@@ -54,7 +54,7 @@ impl Handle {
     }
 }
 
-/// What a node computes. Operands of products and quotients are positive: signs move outwards.
+/// Operation of a node. Operands of products and quotients are positive: signs move outwards.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Op {
     Constant(u32),
@@ -71,7 +71,7 @@ pub enum Op {
 }
 
 impl Op {
-    /// What it is computed from.
+    /// The operation's operands.
     pub(crate) fn operands(&self) -> impl Iterator<Item = Handle> + use<> {
         let (first, second) = match *self {
             Self::Constant(_) | Self::Symbol(_) | Self::Cosine(_) | Self::Sine(_) => (None, None),
@@ -86,7 +86,7 @@ impl Op {
     }
 }
 
-/// The two random points of the field and the real point at which every node is evaluated.
+/// Number of random points of the field at which every node is evaluated.
 const POINTS: usize = 2;
 
 #[derive(Debug)]
@@ -94,7 +94,7 @@ struct Node {
     op: Op,
     fingerprint: Fingerprint,
     scope: u32,
-    /// The set of placeholders that it is written with.
+    /// Set of placeholders that occur in the node's expression.
     placeholders: u32,
 }
 
@@ -102,11 +102,12 @@ struct Node {
 struct Tables {
     nodes: Vec<Node>,
     constants: Vec<Number>,
-    /// Where constants of a value in the field stand; they differ in their floats.
+    /// Indices of the constants with a field value; they differ in their floats.
     constant_ids: ByValue<Vec<u32>>,
     symbols: Vec<Symbol>,
     symbol_ids: HashMap<String, SymbolId>,
-    /// Constants that symbols stand for, and whether it is the negative that they stand for.
+    /// Symbols that represent constants, by the constant's value, and whether they represent its
+    /// negative.
     stands: ByValue<(SymbolId, bool)>,
     directions: Vec<Direction>,
     direction_ids: QuickMap<Direction, u32>,
@@ -119,9 +120,9 @@ struct Tables {
     never_zero: BTreeSet<usize>,
     scopes: Vec<String>,
     scope: u32,
-    /// Whether multiples of nodes by irrational constants are looked for.
+    /// Whether multiples of nodes by irrational constants are searched.
     finds_irrational: bool,
-    /// Whether sums that are known over a divisor are looked for.
+    /// Whether sums are searched as a known expression over a divisor.
     finds_over_divisors: bool,
 }
 
@@ -176,7 +177,7 @@ impl Arena {
         tables.scope = at as u32;
     }
 
-    /// Gives a node a name, if it has none and is worth one (constants and inputs are not).
+    /// Names a node that has no name yet; constants and inputs stay unnamed.
     pub fn name(&self, expr: Expr<'_>, name: &str) {
         let mut tables = self.tables.borrow_mut();
         let index = expr.handle().index();
@@ -191,7 +192,7 @@ impl Arena {
         self.tables.borrow().names.get(&index).cloned()
     }
 
-    /// The name of whatever has this fingerprint; `minus_…` if only its negative has a name.
+    /// Name of the node with this fingerprint; `minus_…` if only its negative has a name.
     pub(crate) fn name_of_value(&self, fingerprint: &Fingerprint) -> Option<String> {
         let handle = self.same(fingerprint)?;
         let name = self.name_of(handle.index())?;
@@ -202,7 +203,8 @@ impl Arena {
         })
     }
 
-    /// Says that an expression is never zero, such as a square and one more: it may be divided by anywhere.
+    /// Declares that an expression is never zero, such as a square plus one, so divisions by it
+    /// need no guard.
     pub fn assert_never_zero(&self, expr: Expr<'_>) {
         let index = expr.handle().index();
         self.tables.borrow_mut().never_zero.insert(index);
@@ -212,20 +214,20 @@ impl Arena {
         self.tables.borrow().never_zero.contains(&index)
     }
 
-    /// What those evaluate to that are known never to be zero.
+    /// Fingerprints of the nodes that are never zero.
     pub(crate) fn never_zero(&self) -> Vec<Fingerprint> {
         let tables = self.tables.borrow();
         let nodes = tables.never_zero.iter();
         nodes.map(|&node| tables.nodes[node].fingerprint).collect()
     }
 
-    /// What a node computes.
+    /// Operation of a node.
     #[must_use]
     pub fn op(&self, index: usize) -> Op {
         self.tables.borrow().nodes[index].op.clone()
     }
 
-    /// What a node evaluates to.
+    /// Fingerprint of a node.
     pub(crate) fn fingerprint_at(&self, index: usize) -> Fingerprint {
         self.tables.borrow().nodes[index].fingerprint
     }
@@ -240,7 +242,7 @@ impl Arena {
         self.tables.borrow().directions.len() as u32
     }
 
-    /// What cosine and sine of an angle evaluate to.
+    /// Fingerprints of the cosine and sine of an angle.
     pub(crate) fn turn_fingerprints(&self, id: u32) -> (Fingerprint, Fingerprint) {
         self.tables.borrow().cosine_and_sine(id)
     }
@@ -338,7 +340,7 @@ impl Arena {
         id
     }
 
-    /// The node that computes `op`, or one that means the same.
+    /// The node that computes `op`, or an existing node of equal meaning.
     pub(crate) fn intern(&self, op: Op) -> Handle {
         if let Some(&handle) = self.tables.borrow().by_shape.get(&op) {
             return handle;
@@ -356,7 +358,7 @@ impl Arena {
         handle
     }
 
-    /// The constant that the node is, if its value is the same fraction at every point.
+    /// The constant that equals the node, if its value is the same fraction at every point.
     fn folded(&self, op: &Op, fingerprint: &Fingerprint) -> Option<Handle> {
         if fingerprint.image[0] != fingerprint.image[1] {
             return None;
@@ -381,7 +383,7 @@ impl Arena {
             .then_some(found)
     }
 
-    /// Whether a node that means the same may stand for an operation.
+    /// Whether an existing node of equal meaning may replace an operation.
     fn fits(&self, op: &Op, handle: Handle) -> bool {
         let mut tables = self.tables.borrow_mut();
         let placeholders = tables.placeholders(op);
@@ -395,7 +397,7 @@ impl Arena {
         )
     }
 
-    /// A new node; it is found by its ratio key if it has one.
+    /// Adds a node, and indexes it by its ratio key if it has one.
     fn push(&self, op: Op, fingerprint: Fingerprint, ratio: Option<Element>) -> Handle {
         let mut tables = self.tables.borrow_mut();
         let index = tables.nodes.len();
@@ -406,7 +408,8 @@ impl Arena {
             scope,
             placeholders,
         });
-        // The first node with a fingerprint stands for it; one written with more placeholders gives way.
+        // The first node with a fingerprint represents it, unless a later one has fewer
+        // placeholders.
         let stands = |tables: &Tables, index: usize| tables.may_stand(index, placeholders);
         let (key, negative) = canonical(fingerprint.image);
         let known = tables.by_fingerprint.get(&key).copied();
@@ -425,7 +428,7 @@ impl Arena {
     }
 }
 
-/// The name of the negative of what has a name.
+/// Name of the negative of a named node.
 #[must_use]
 pub fn negative_name(name: &str) -> String {
     match name.strip_prefix("minus_") {

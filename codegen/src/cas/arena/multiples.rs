@@ -7,13 +7,14 @@ use overact_exact::Number;
 use overact_exact::Ratio;
 
 impl Arena {
-    /// From now on, a node that is another one times a fraction of a known irrational constant is that one, scaled;
-    /// with fractions alone it always is.
+    /// Enables reuse of nodes that differ by a fraction of a known irrational constant.
+    ///
+    /// Multiples by fractions are always reused.
     pub(crate) fn find_irrational_multiples(&self) {
         self.tables.borrow_mut().finds_irrational = true;
     }
 
-    /// The rational multiple of a node that this one is, or else a node of its own.
+    /// A rational multiple of an existing node if there is one, otherwise a new node.
     pub(super) fn multiple_or_new(&self, op: Op, fingerprint: Fingerprint) -> Handle {
         let scaled = match op {
             Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
@@ -33,12 +34,12 @@ impl Arena {
         multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
     }
 
-    /// The known node of which this is a multiple, scaled.
+    /// The existing node of which this is a multiple, scaled.
     pub(super) fn multiple(&self, fingerprint: &Fingerprint) -> Option<Handle> {
         self.proportional(ratio_key(fingerprint)?, fingerprint)
     }
 
-    /// The multiple of a node by a fraction or by a known constant that this one is.
+    /// This value as an existing node times a fraction or a known constant.
     fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
         let (other, factor) = {
             let tables = self.tables.borrow();
@@ -65,10 +66,11 @@ impl Arena {
 }
 
 impl Tables {
-    /// The constant of this value, if it is a fraction of a constant that is written anywhere, or of the reciprocal
-    /// of one: of √3/2, for instance, 2/√3, 1/√3 and √3.
+    /// The constant of this value, as a fraction of a known constant or of its reciprocal.
+    ///
+    /// From √3/2, for instance, it finds 2/√3, 1/√3 and √3.
     fn fraction_of_constant(&self, value: Element) -> Option<Number> {
-        /// Larger numerators and denominators might be found by chance.
+        /// Larger numerators and denominators may match by chance.
         const LARGEST: i64 = 1 << 20;
         let irrational = self.constants.iter().filter(|own| own.as_ratio().is_none());
         irrational.copied().find_map(|own| {
@@ -85,7 +87,7 @@ impl Tables {
     }
 }
 
-/// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
+/// Ratio of the values at the two points, equal for nodes that differ by a constant factor.
 fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
     (fingerprint.image[1] != Element::ZERO)
         .then(|| fingerprint.image[0] * fingerprint.image[1].inverse())

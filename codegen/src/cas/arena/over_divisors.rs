@@ -1,20 +1,22 @@
-//! Sums that are known over what their parts are divided by.
+//! Sums of quotients that equal a known expression over their divisors.
 
 use super::super::expr::Expr;
 use super::super::field::Element;
 use super::{Arena, Handle, Op};
 
-/// How deep under a sum divisors are looked for: in a product of a quotient that is a part of a part.
+/// Depth below a sum to which divisors are searched.
 const DEPTH: usize = 4;
 
 impl Arena {
-    /// From now on, a sum of quotients that is a known expression over their divisors is written so.
+    /// Enables rewriting of sums of quotients as a known expression over their divisors.
     pub(crate) fn find_over_divisors(&self) {
         self.tables.borrow_mut().finds_over_divisors = true;
     }
 
-    /// t / d for a sum and what parts of it are divided by, d, one divisor or the product of all, where t, the sum
-    /// times d, is known or a multiple of what is known: (t₂ c - t₁ s) c/s + (t₁ c + t₂ s), for instance, is t₂ / s.
+    /// A sum as t / d, with d one divisor of its terms or the product of all.
+    ///
+    /// It exists if t, the sum times d, is a known expression or a multiple of one. For instance,
+    /// (t₂ c - t₁ s) c/s + (t₁ c + t₂ s) becomes t₂ / s.
     pub(in super::super) fn over_divisors(&self, sum: &Op) -> Option<Expr<'_>> {
         let tables = self.tables.borrow();
         if !tables.finds_over_divisors || tables.by_shape.contains_key(sum) {
@@ -38,7 +40,7 @@ impl Arena {
         })
     }
 
-    /// What parts of a sum are divided by, each divisor once.
+    /// Divisors in the terms of a sum, each once.
     fn divisors_under(&self, sum: &Op) -> Vec<Handle> {
         let mut divisors = Vec::new();
         let mut parts: Vec<(Handle, usize)> = sum.operands().map(|part| (part, 1)).collect();
@@ -88,7 +90,7 @@ mod tests {
         assert_eq!(solved(false), (false, true));
     }
 
-    /// A sum that is nothing over its divisors stays as it is written.
+    /// A sum that matches no known expression over its divisors stays unchanged.
     #[test]
     fn a_sum_of_other_quotients_stays() {
         let arena = Arena::new();

@@ -1,8 +1,8 @@
-//! Which placeholders a node is written with.
+//! The placeholders that occur in each node.
 //!
-//! Where a placeholder cancels, a node means the same as one written without it. Such a node may stand
-//! only for an operation that is written with its placeholders anyway: otherwise a placeholder would
-//! come into an expression that has nothing to do with it.
+//! If a placeholder cancels, a node equals one that does not contain it. Such a node may replace
+//! only operations that already contain its placeholders. Otherwise a placeholder would enter an
+//! unrelated expression.
 
 use super::super::direction::SymbolId;
 use super::{Handle, Op, Tables};
@@ -55,7 +55,7 @@ impl Sets {
 }
 
 impl Tables {
-    /// The set of placeholders that an operation is written with.
+    /// Set of placeholders that occur in an operation.
     pub(super) fn placeholders(&mut self, op: &Op) -> u32 {
         let of = |handle: &Handle| self.nodes[handle.index()].placeholders;
         match op {
@@ -72,7 +72,7 @@ impl Tables {
         }
     }
 
-    /// Whether a node that means the same may stand for what is written with a set of placeholders.
+    /// Whether a node may replace an expression with this set of placeholders.
     pub(super) fn may_stand(&self, node: usize, placeholders: u32) -> bool {
         self.sets
             .contains(placeholders, self.nodes[node].placeholders)

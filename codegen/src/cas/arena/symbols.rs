@@ -22,28 +22,28 @@ impl std::fmt::Display for InputElement {
     }
 }
 
-/// What a symbol stands for.
+/// What a symbol represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A number or an angle that a function is given.
+    /// An element of a function's input array.
     Input(InputElement),
-    /// Something unknown while equations are searched.
+    /// An unknown in the search for equations.
     Placeholder,
-    /// What its name says.
+    /// A free variable, identified by its name.
     Free,
 }
 
 #[derive(Debug)]
 pub(super) struct Symbol {
     pub(super) name: String,
-    /// The values of the symbol as a number.
+    /// Fingerprint of the symbol as a number.
     pub(super) fingerprint: Fingerprint,
-    /// The points of the field's circle for the symbol as an angle.
+    /// Points on the field's unit circle for the symbol as an angle.
     pub(super) circle: [Element; POINTS],
-    /// The real sample of the number and of the angle.
+    /// Real sample of the symbol as a number or an angle.
     pub(super) sample: f64,
     kind: Kind,
-    /// The values of any number, where the symbol's own are those of a sign.
+    /// Fingerprint of an arbitrary number, if the symbol's own is that of a sign.
     as_any: Option<Fingerprint>,
 }
 
@@ -77,7 +77,7 @@ impl Arena {
         self.tables.borrow().symbols[id.0 as usize].name.clone()
     }
 
-    /// The element of an input array that a symbol is, if it is one.
+    /// The element of an input array that a symbol represents, if any.
     #[must_use]
     pub fn input_element(&self, id: SymbolId) -> Option<InputElement> {
         match self.tables.borrow().symbols[id.0 as usize].kind {
@@ -86,14 +86,16 @@ impl Arena {
         }
     }
 
-    /// Whether a symbol stands for something unknown.
+    /// Whether a symbol is a placeholder of an unknown.
     #[must_use]
     pub fn is_placeholder(&self, id: SymbolId) -> bool {
         self.tables.borrow().symbols[id.0 as usize].is_placeholder()
     }
 
-    /// The values of a symbol as a number. A sign has those of any number here: where there is one point of the field
-    /// only, no value has the square one and is neither one nor its negative.
+    /// Fingerprint of a symbol as a number; a sign has that of an arbitrary number here.
+    ///
+    /// At a single point of the field, only 1 and -1 have a square of one, so no value there
+    /// represents a sign.
     pub(crate) fn symbol_fingerprint(&self, id: SymbolId) -> Fingerprint {
         let own = &self.tables.borrow().symbols[id.0 as usize];
         own.as_any.unwrap_or(own.fingerprint)
@@ -104,8 +106,8 @@ impl Arena {
         (0..self.tables.borrow().symbols.len() as u32).map(SymbolId)
     }
 
-    /// The symbol of that name, made if it is new. It may stand for a number and, in a
-    /// [`Direction`], for an angle.
+    /// The symbol of that name, created if it is new. It represents a number and, in a
+    /// [`Direction`], an angle.
     pub fn symbol(&self, name: &str) -> SymbolId {
         self.symbol_of_kind(name, Kind::Free)
     }
@@ -116,7 +118,7 @@ impl Arena {
         self.symbol_of_kind(&element.to_string(), Kind::Input(element))
     }
 
-    /// The symbol of another graph, made here if it is new.
+    /// The symbol of another graph, created here if it is new.
     pub(crate) fn symbol_like(&self, other: &Self, id: SymbolId) -> SymbolId {
         let kind = other.tables.borrow().symbols[id.0 as usize].kind;
         self.symbol_of_kind(&other.symbol_name(id), kind)
@@ -133,8 +135,10 @@ impl Arena {
         id
     }
 
-    /// Lets an element of an input array stand for a constant wherever the constant or its negative comes up from
-    /// now on: the constant is not folded into others, and keeps its relations to them, such as c² + s² = 1.
+    /// Represents a constant, and its negative, by an element of an input array from now on.
+    ///
+    /// The constant is then not folded into others, but keeps its relations to them, such as c² +
+    /// s² = 1.
     pub(crate) fn stand_for(&self, number: Number, array: &'static str, index: usize) {
         let symbol = self.input_symbol(array, index);
         let mut tables = self.tables.borrow_mut();
@@ -145,7 +149,7 @@ impl Arena {
         tables.stands.insert((-number).image(), (symbol, true));
     }
 
-    /// A sum of products of constants: one constant, unless something stands for a factor.
+    /// A sum of products of constants, folded unless a symbol represents a factor.
     pub(crate) fn constant_sum<const N: usize>(&self, terms: [[Number; 3]; N]) -> Expr<'_> {
         let tables = self.tables.borrow();
         let mut factors = terms.iter().flatten();
@@ -163,8 +167,9 @@ impl Arena {
         }
     }
 
-    /// Lets an element of an input array be a sign: one at the first point of the field and at the real one, minus one at
-    /// the second, so that its square is one and it is neither.
+    /// Makes an element of an input array a sign, with values 1, -1 and, at the real point, 1.
+    ///
+    /// Its square is then one, but it equals neither 1 nor -1.
     pub(crate) fn let_be_sign(&self, array: &'static str, index: usize) {
         let symbol = self.input_symbol(array, index);
         let mut tables = self.tables.borrow_mut();
@@ -177,9 +182,11 @@ impl Arena {
         own.sample = 1.0;
     }
 
-    /// Lets four elements of an input array be a quaternion of length one, some of which are zero: its points of the
-    /// field lie on the sphere, at (1 - u², 2 u) / (1 + u²) for free u, so that the identities of rotations are found.
-    /// None of its elements may be in use.
+    /// Makes four elements of an input array a unit quaternion, with the entries `zero` fixed at
+    /// zero.
+    ///
+    /// Its field points lie on the sphere, at (1 - u², 2 u) / (1 + u²) for free u, so that
+    /// identities of rotations are found. None of the elements may be in use yet.
     pub(crate) fn unit_quaternion(&self, array: &'static str, first: usize, zero: &[usize]) {
         let symbols: [SymbolId; 4] = std::array::from_fn(|k| self.input_symbol(array, first + k));
         let mut tables = self.tables.borrow_mut();
@@ -187,7 +194,7 @@ impl Arena {
         let mut free = symbols.map(|symbol| tables.symbols[symbol.0 as usize].fingerprint);
         let is_zero = |k: &usize| zero.contains(&(first + k));
         (0..4).filter(is_zero).for_each(|k| free[k] = number(0));
-        // One that is not zero is at the pole.
+        // The first entry that is not fixed at zero is the pole.
         let Some(pole) = (0..4).find(|k| !is_zero(k)) else {
             return;
         };
@@ -206,7 +213,7 @@ impl Arena {
         }
     }
 
-    /// The value of the constant that a symbol stands for, if it stands for one.
+    /// Value of the constant that a symbol represents, if any.
     pub(crate) fn constant_of(&self, symbol: SymbolId) -> Option<f64> {
         let tables = self.tables.borrow();
         let own = &tables.symbols[symbol.0 as usize];
@@ -236,9 +243,10 @@ impl Arena {
         Direction::symbol(self.input_symbol(array, index))
     }
 
-    /// The value of a symbol that stands for something unknown while equations are searched. Where it
-    /// cancels, the expression means the same as one without it, but is still written with it; such a
-    /// node is never taken for an expression that is written without it.
+    /// A symbol of an unknown in the search for equations, as an expression.
+    ///
+    /// Where it cancels, the expression equals one without it but still contains it. Such a node
+    /// never replaces an expression without the placeholder.
     pub fn placeholder(&self, name: &str) -> Expr<'_> {
         self.value_of(self.symbol_of_kind(name, Kind::Placeholder))
     }
@@ -249,7 +257,7 @@ mod tests {
     use super::*;
     use crate::cas::Ratio;
 
-    /// The entries of a quaternion have squares of sum one, and with one that is zero so have the others.
+    /// The squares of a quaternion's entries sum to one, also if some entries are zero.
     #[test]
     fn the_squares_of_a_unit_quaternion_are_one_together() {
         for zero in [&[][..], &[6], &[3, 5]] {

@@ -1,10 +1,10 @@
-//! Bodies in their own frames: velocities, accelerations, partial velocities, and the wrench that one
-//! standard parameter produces.
+//! Bodies in their own frames: velocities, accelerations, partial velocities, and the wrench of
+//! each standard parameter.
 //!
-//! The recursion is Khalil's: with `U = [ω̇]× + [ω]×[ω]×`, the acceleration of the next origin is a + U l.
-//! Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and ∂Ω/∂u_i follow the
-//! same path; by virtual power (Kane) the generalised force of parameter p on u_i is their scalar
-//! product with the wrench that p alone produces.
+//! The recursion is Khalil's: with `U = [ω̇]× + [ω]×[ω]×`, the acceleration of the next origin is
+//! a + U l. Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and
+//! ∂Ω/∂u_i follow the same path. By virtual power (Kane), the generalised force of parameter p on
+//! u_i is their scalar product with the wrench of p alone.
 
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::derivation::closure::leg::LegState;
@@ -17,12 +17,12 @@ use crate::derivation::kinematics::turn::Turn;
 use crate::mechanism::{JointKind, Leg};
 use overact_description::StandardParameter;
 
-/// Axes that meet in a point, seen from a body.
+/// Axes that meet in a point, relative to a body.
 #[derive(Debug, Clone)]
 pub struct Lever<'a> {
     /// From the point to the frame's origin.
     pub vector: Vector3<'a>,
-    /// The quasi-velocities of these axes.
+    /// Quasi-velocities of these axes.
     pub axes: Vec<usize>,
 }
 
@@ -33,13 +33,13 @@ pub struct BodyMotion<'a> {
     pub omega: Vector3<'a>,
     /// Angular acceleration ω̇.
     pub alpha: Vector3<'a>,
-    /// Acceleration of the frame's origin less gravity.
+    /// Acceleration of the frame's origin minus gravity.
     pub acceleration: Vector3<'a>,
     /// `U = [ω̇]× + [ω]×[ω]×`.
     pub u_matrix: Matrix3<'a>,
     /// ∂V/∂u_i and ∂Ω/∂u_i: partial velocities of the frame.
     pub partials: Vec<SpatialMotion<'a>>,
-    /// Axes on which a wrench acts by its moment about a point.
+    /// Axes on which a wrench acts by its moment about a common point.
     pub levers: Vec<Lever<'a>>,
 }
 
@@ -64,11 +64,11 @@ impl<'a> BodyMotion<'a> {
         }
     }
 
-    /// The generalised forces on all u of a wrench in the body's frame.
+    /// Generalised forces on all u of a wrench in the body's frame.
     #[must_use]
     pub fn project(&self, wrench: Wrench<'a>) -> Vec<Expr<'a>> {
         let Wrench { force, moment } = wrench;
-        // One form only may be written: the graph takes a second one for the first.
+        // Only one form may be constructed: the graph replaces a second one by the first.
         let moments: Vec<Vector3<'a>> = self
             .levers
             .iter()
@@ -84,7 +84,7 @@ impl<'a> BodyMotion<'a> {
         self.partials.iter().enumerate().map(on).collect()
     }
 
-    /// The wrench at the frame's origin, per unit of an inertial parameter.
+    /// Wrench at the frame's origin per unit of an inertial parameter.
     #[must_use]
     pub(crate) fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> Wrench<'a> {
         use StandardParameter as P;
@@ -111,8 +111,8 @@ impl<'a> BodyMotion<'a> {
     }
 }
 
-/// The moment in a body's axes per unit of a second moment: h(ω̇) + ω × h(ω), with the angular momentum
-/// h that the parameter gives.
+/// Moment in a body's axes per unit of a second moment: h(ω̇) + ω × h(ω), with the angular momentum
+/// h of the parameter.
 #[must_use]
 pub(crate) fn second_moment<'a>(
     arena: &'a Arena,
@@ -139,8 +139,9 @@ pub(crate) fn second_moment<'a>(
     momentum(alpha) + omega.cross(momentum(omega))
 }
 
-/// The base frame of a leg with `count` quasi-velocities: at rest in the ground, or moving with a body, whose
-/// own quasi-velocities follow those of the leg.
+/// Base frame of a leg with `count` quasi-velocities, fixed or moving with a body.
+///
+/// The quasi-velocities of that body come after those of the leg.
 pub(crate) fn leg_base<'a>(
     arena: &'a Arena,
     leg: &Leg,
@@ -178,8 +179,9 @@ pub struct LegRates<'a> {
     pub u_dot: Vec<Expr<'a>>,
 }
 
-/// Motion of all bodies of a leg for its quasi-velocities and their derivatives. `None` if a sine or
-/// cosine does not follow from the configuration.
+/// Motion of all bodies of a leg for its quasi-velocities and their derivatives.
+///
+/// `None` if the configuration does not determine a sine or cosine.
 pub(crate) fn leg_bodies<'a>(
     arena: &'a Arena,
     leg: &Leg,
@@ -243,7 +245,7 @@ pub(crate) fn leg_bodies<'a>(
     Some(bodies)
 }
 
-/// The levers of those centres whose axes begin with a joint, in the joint's frame.
+/// The levers of the centres whose first axis is that of a joint, in the joint's frame.
 fn first_levers<'a>(
     arena: &'a Arena,
     state: &LegState<'a>,

@@ -1,5 +1,4 @@
-//! Mass, first moment and inertia of rigidly connected bodies about a frame's origin, which are added up
-//! body by body.
+//! Mass, first moment and inertia of rigidly connected bodies about a frame's origin.
 
 use super::body::second_moment;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
@@ -9,7 +8,7 @@ use crate::derivation::names::{AXES, Names};
 use crate::derivation::parameter::BodyParameter;
 use overact_description::StandardParameter;
 
-/// The inertia of a body, or of several that move as one.
+/// Inertia of a body or of rigidly connected bodies.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inertia<'a> {
     /// Mass.
@@ -21,7 +20,7 @@ pub(crate) struct Inertia<'a> {
 }
 
 impl<'a> Inertia<'a> {
-    /// Of nothing.
+    /// Zero inertia.
     pub(crate) fn zero(arena: &'a Arena) -> Self {
         Self {
             mass: arena.zero(),
@@ -30,7 +29,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// Of a mass in the origin.
+    /// Inertia of a point mass at the origin.
     pub(crate) fn point(mass: Expr<'a>) -> Self {
         Self {
             mass,
@@ -38,8 +37,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// Of the inertial parameters that are a body's own, with their values; parameters of two bodies that
-    /// are one add up.
+    /// Inertia from the values of a body's inertial parameters; repeated parameters add up.
     pub(crate) fn of(
         arena: &'a Arena,
         values: &[(BodyParameter, Expr<'a>)],
@@ -75,7 +73,7 @@ impl<'a> Inertia<'a> {
         sum
     }
 
-    /// The same bodies in the axes of the antecedent frame, about the same origin.
+    /// The inertia in the antecedent's axes, about the same origin.
     pub(crate) fn turned_back(&self, turn: &Turn<'a>) -> Self {
         Self {
             mass: self.mass,
@@ -84,7 +82,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// The same bodies in other axes, about the same origin.
+    /// The inertia in other axes, about the same origin.
     pub(crate) fn rotated(&self, rotation: Matrix3<'a>) -> Self {
         let moved = rotation * self.second;
         let entry = |i: usize, j: usize| moved.row(i.min(j)).dot(rotation.row(i.max(j)));
@@ -97,7 +95,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// What the bodies, about an origin at `at`, add to those of a frame with the same axes.
+    /// This inertia, with origin at `at` in a frame of equal axes, added to that of the frame.
     pub(crate) fn moved_onto(&self, onto: &Self, at: Vector3<'a>) -> Self {
         let arm = at.scaled(self.mass);
         let (before, after) = (self.first, self.first + arm);
@@ -122,8 +120,10 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// What a joint that turns about z leaves as it is, and the rest: mass, the first moment along the axis,
-    /// and as much inertia about x as about y, which is that of a rod along the axis.
+    /// Splits the inertia into the part that is invariant under rotation about z, and the rest.
+    ///
+    /// The first part is the mass, the first moment along the axis, and equal inertias about x and
+    /// y: those of a rod along the axis.
     pub(crate) fn split_about_z(&self) -> [Self; 2] {
         let arena = self.mass.arena();
         let (mut rod, mut rest) = (Self::zero(arena), *self);
@@ -139,7 +139,7 @@ impl<'a> Inertia<'a> {
         [rod, rest]
     }
 
-    /// What a joint that slides leaves as it is, the inertia, and the rest.
+    /// Splits the inertia into the part that is invariant under translation along z, and the rest.
     pub(crate) fn split_along_z(&self) -> [Self; 2] {
         let (mut kept, mut rest) = (Self::zero(self.mass.arena()), *self);
         kept.second = self.second;
@@ -147,8 +147,7 @@ impl<'a> Inertia<'a> {
         [kept, rest]
     }
 
-    /// The moment of the inertia about the body's axes at a velocity and an acceleration of its turn:
-    /// h(ω̇) + ω × h(ω).
+    /// Moment about the body's axes at an angular velocity and acceleration: h(ω̇) + ω × h(ω).
     pub(crate) fn turning_moment(&self, omega: Vector3<'a>, alpha: Vector3<'a>) -> Vector3<'a> {
         use StandardParameter as P;
         let arena = self.mass.arena();
@@ -173,7 +172,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// Names what is no parameter itself: `mass2_leg1`, `first2_x_leg1`, `inertia2_xy_leg1`.
+    /// Names composite quantities: `mass2_leg1`, `first2_x_leg1`, `inertia2_xy_leg1`.
     pub(crate) fn name(&self, names: &mut Names<'a>, body: &str, place: &str) {
         let end = if place.is_empty() {
             String::new()

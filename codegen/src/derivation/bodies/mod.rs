@@ -1,4 +1,4 @@
-//! Bodies of legs and bodies on the platform: motion, inertia, and the wrench of each standard parameter.
+//! Bodies of legs and on the platform: motion, inertia, and the wrench of each standard parameter.
 
 pub(crate) mod body;
 pub(crate) mod inertia;

@@ -15,22 +15,22 @@ pub struct RobotMotion<'a> {
     pub u_dot: Vec<Vec<Expr<'a>>>,
     /// Bodies of every leg.
     pub bodies: Vec<Vec<BodyMotion<'a>>>,
-    /// Those bodies of every leg that move with the platform.
+    /// The bodies of every leg that move with the platform.
     pub platform_bodies: Vec<Vec<Option<PlatformBody<'a>>>>,
-    /// For every leg the acceleration of its end less gravity, if a mass there counts as a point of the body at which the
-    /// leg ends.
+    /// Acceleration minus gravity of each leg's end, if a mass there counts as a point of the end
+    /// body.
     pub(crate) ends: Vec<Option<Vector3<'a>>>,
     /// The platform.
     pub platform: Option<PlatformBody<'a>>,
 }
 
-/// A motion that was derived.
+/// A derived motion of the robot.
 #[derive(Debug)]
 pub(crate) struct Moved<'a> {
-    /// Of legs and bodies.
+    /// Motion of legs and bodies.
     pub(crate) motion: RobotMotion<'a>,
-    /// Of the platform.
+    /// Motion of the platform.
     pub(crate) platform: Option<PlatformMotion<'a>>,
-    /// Which accelerations it has.
+    /// The accelerations of the motion.
     pub(crate) accelerations: Accelerations,
 }

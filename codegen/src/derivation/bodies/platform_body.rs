@@ -1,10 +1,10 @@
-//! Bodies that move with the platform: the platform itself, its payload, and the last bodies of legs
-//! that end rigidly.
+//! Bodies that move with the platform: the platform, its payload, and the last bodies of legs with
+//! a rigid end.
 //!
-//! Such a body's motion is the platform's, so its parameters are projected on the twist coordinates
-//! directly and never pass through a leg's joints. Everything is written in the base's axes, where the
-//! twist is: with `U = [ω̇]× + [ω]×[ω]×` and the body's axes r_k, a first moment about r_k has the force
-//! U r_k, which the acceleration of every platform point is made of too, and the moment r_k × a.
+//! Their parameters are projected on the twist coordinates directly, not through the joints of a
+//! leg. All vectors are in the base's axes, as the twist is. With `U = [ω̇]× + [ω]×[ω]×` and the
+//! body's axes r_k, a first moment along r_k has the force U r_k and the moment r_k × a. The
+//! acceleration of every platform point contains U r_k, too.
 
 use super::body::second_moment;
 use super::inertia::Inertia;
@@ -20,9 +20,9 @@ use overact_description::StandardParameter;
 /// A frame that is fixed on the platform, in the platform frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Mount<'a> {
-    /// Orientation, a constant.
+    /// Constant orientation.
     rotation: Matrix3<'a>,
-    /// Origin, constants.
+    /// Constant origin.
     at: [Number; 3],
 }
 
@@ -36,7 +36,7 @@ impl<'a> Mount<'a> {
         }
     }
 
-    /// The inertia of a body in this frame, added to that of the platform in the platform's.
+    /// The inertia of a body in this frame, added to that of the platform in the platform frame.
     pub(crate) fn on_platform(
         &self,
         arena: &'a Arena,
@@ -47,8 +47,10 @@ impl<'a> Mount<'a> {
         turned.moved_onto(onto, Vector3::constant(arena, self.at))
     }
 
-    /// The frames of a leg's joints that are fixed on the platform: the last one, where the leg ends
-    /// rigidly. `None` for the others.
+    /// The frames of a leg's joints that are fixed on the platform: the last one if the end is
+    /// rigid.
+    ///
+    /// `None` for the others.
     #[must_use]
     pub fn of_leg(arena: &'a Arena, leg: &Leg) -> Vec<Option<Self>> {
         let mut mounts = vec![None; leg.joints.len()];
@@ -76,9 +78,9 @@ pub struct PlatformBody<'a> {
     alpha: Vector3<'a>,
     /// `U r_k` as columns.
     centripetal: Matrix3<'a>,
-    /// Acceleration of the body frame's origin less gravity.
+    /// Acceleration of the body frame's origin minus gravity.
     acceleration: Vector3<'a>,
-    /// From the platform's origin to the body frame's.
+    /// Vector from the platform's origin to the body frame's.
     arm: Vector3<'a>,
 }
 
@@ -109,7 +111,7 @@ impl<'a> PlatformBody<'a> {
         }
     }
 
-    /// The wrench at the body frame's origin per unit of an inertial parameter, in the base's axes.
+    /// Wrench at the body frame's origin per unit of an inertial parameter, in the base's axes.
     #[must_use]
     pub(crate) fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> Wrench<'a> {
         use StandardParameter as P;
@@ -139,7 +141,7 @@ impl<'a> PlatformBody<'a> {
         }
     }
 
-    /// The wrench of an inertia at the body frame's origin, in the base's axes.
+    /// Wrench of an inertia at the body frame's origin, in the base's axes.
     pub(crate) fn wrench(&self, inertia: &Inertia<'a>) -> Wrench<'a> {
         let axes = self.platform * self.mounted;
         let force = self.acceleration.scaled(inertia.mass) + self.centripetal * inertia.first;
@@ -151,10 +153,10 @@ impl<'a> PlatformBody<'a> {
         }
     }
 
-    /// The generalised force of a unit of an inertial parameter on each of some coordinates.
+    /// Generalised force per unit of an inertial parameter on some coordinates.
     ///
-    /// `partials` are the platform's partial velocities with respect to these coordinates. Moments are taken in the
-    /// body's own axes, where a second moment has few components.
+    /// `partials` are the platform's partial velocities with respect to these coordinates. Moments
+    /// are in the body's own axes, where a second moment has few components.
     pub(crate) fn on_partials(
         &self,
         arena: &'a Arena,
@@ -187,7 +189,7 @@ impl<'a> PlatformBody<'a> {
         partials.iter().map(on).collect()
     }
 
-    /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.
+    /// Generalised forces on the twist coordinates of a wrench at the body frame's origin.
     #[must_use]
     pub fn project(&self, twist: &[TwistCoordinate], wrench: Wrench<'a>) -> Vec<Expr<'a>> {
         on_twist(twist, self.arm, wrench)

@@ -1,4 +1,4 @@
-//! The acceleration of a leg's end that is left when all quasi-accelerations u̇ are zero.
+//! Bias acceleration of a leg's end: its acceleration when all quasi-accelerations u̇ are zero.
 
 use crate::cas::{Arena, Expr, Vector3};
 use crate::derivation::kinematics::frames::{LegFrames, path_to_end};
@@ -6,7 +6,7 @@ use crate::derivation::kinematics::rates::Rates;
 use crate::derivation::kinematics::spatial::SpatialMotion;
 use crate::mechanism::{JointKind, Leg};
 
-/// A part of the end's acceleration at u̇ = 0.
+/// A term of the end's acceleration at u̇ = 0.
 #[derive(Debug, Clone, Copy)]
 pub struct BiasTerm<'a> {
     /// A factor, for instance -ω².
@@ -15,7 +15,7 @@ pub struct BiasTerm<'a> {
     pub acceleration: SpatialMotion<'a>,
 }
 
-/// Rotation of a frame along the path.
+/// Angular velocity and acceleration of a frame on the path.
 #[derive(Clone, Copy)]
 struct AngularState<'a> {
     /// Angular velocity ω.

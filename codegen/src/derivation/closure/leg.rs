@@ -1,4 +1,4 @@
-//! What a derivation knows of a leg: frames, rates, closure.
+//! State of a leg in a derivation: frames, rates, closure.
 
 use super::bias::{BiasTerm, end_bias};
 use super::leg_closure::LegClosure;
@@ -14,17 +14,18 @@ use crate::mechanism::{End, Leg};
 /// Gravity as the acceleration -g of the ground, for one leg.
 #[derive(Debug, Default)]
 pub(crate) struct LegGravity<'a> {
-    /// The acceleration that the closure takes into account; `None` if the closure leaves gravity out.
+    /// Acceleration that the closure includes; `None` if the closure excludes gravity.
     pub(crate) ground: Option<GroundAcceleration<'a>>,
-    /// The acceleration in the observer's axes, to add to that of the leg's end if a mass is there. `None` of a leg that
-    /// stands on a moving body, and where there are no such masses.
+    /// Acceleration in the observer's axes, added to that of the leg's end for a mass there.
+    ///
+    /// `None` for a leg on a moving body and if there are no such masses.
     pub(crate) end_offset: Option<Vector3<'a>>,
 }
 
 /// The acceleration -g of the ground in two sets of axes.
 #[derive(Debug)]
 pub(crate) struct GroundAcceleration<'a> {
-    /// In the axes in which the closure sees the body at the leg's end.
+    /// In the axes in which the closure expresses the body at the leg's end.
     pub(crate) in_observer_axes: Vector3<'a>,
     /// In the axes of the leg.
     pub(crate) in_leg_axes: Vector3<'a>,
@@ -39,21 +40,23 @@ pub struct LegState<'a> {
     pub frames: LegFrames<'a>,
     /// Joint rates as forms of the quasi-velocities.
     pub rates: Rates,
-    /// Axes that share the moment about the point in which they meet.
+    /// Axes that share the moment about the point where they meet.
     pub centres: Vec<Centre>,
-    /// What the leg ends on; `None` for a tree.
+    /// Pose of the body at the leg's end; `None` for a tree.
     pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
-    /// Gravity, for a leg that stands on the ground.
+    /// Gravity, for a leg on the ground.
     pub(crate) gravity: LegGravity<'a>,
-    /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body those of the leg follow that
-    /// carries it, whose quasi-velocities move its bodies, too.
+    /// ∂u/∂v, r numbers per u.
+    ///
+    /// For a chain on a moving body, the rows of the leg that carries it follow: its
+    /// quasi-velocities move the chain's bodies, too.
     pub rows: Rows<'a>,
 }
 
 impl<'a> LegState<'a> {
-    /// The motion of what the leg ends on, with gravity as an acceleration if the closure takes it into account.
+    /// Motion of the leg's end body, with gravity as an acceleration if the closure includes it.
     pub(crate) fn less_gravity(&self, end: PlatformMotion<'a>) -> PlatformMotion<'a> {
         match &self.gravity.ground {
             Some(ground) => PlatformMotion {
@@ -64,7 +67,8 @@ impl<'a> LegState<'a> {
         }
     }
 
-    /// The acceleration less gravity of a leg's end, for a mass that is there; `end` is [`less_gravity`](Self::less_gravity).
+    /// Acceleration minus gravity of a leg's end, for a mass there; `end` is
+    /// [`less_gravity`](Self::less_gravity).
     pub(crate) fn end_less_gravity(
         &self,
         leg: &Leg,
@@ -79,7 +83,7 @@ impl<'a> LegState<'a> {
         (*along == [true; 3]).then(|| if has_gravity { there } else { there + offset })
     }
 
-    /// The acceleration of the leg's end at u̇ = 0, less gravity if the closure takes it into account.
+    /// Acceleration of the leg's end at u̇ = 0, minus gravity if the closure includes it.
     pub(crate) fn bias(&self, arena: &'a Arena, leg: &Leg, u: &[Expr<'a>]) -> Vec<BiasTerm<'a>> {
         let mut terms = end_bias(arena, leg, &self.frames, &self.rates, u);
         terms.extend(self.gravity.ground.as_ref().map(|ground| BiasTerm {

@@ -1,14 +1,17 @@
-//! The closure of a leg and its reduced Jacobians, eqs. (9) to (13).
+//! Closure of a leg and its reduced Jacobians, eqs. (9) to (13).
 //!
-//! The leg's end moves with Ṗ = Σ E_i u_i and turns with Σ W_i u_i, where u are the quasi-velocities of
-//! [`rates`](crate::derivation::kinematics::rates). As many rows of (E, W) as there are u are inverted once per leg; row i of
-//! the inverse is a wrench (f_i, n_i) at P that feels joint i alone:
+//! The leg's end has the velocity Ṗ = Σ E_i u_i and the angular velocity Σ W_i u_i, where u are the
+//! quasi-velocities of [`rates`](crate::derivation::kinematics::rates). As many rows of (E, W) as
+//! there are u are inverted once per leg. Row i of the inverse is a wrench (f_i, n_i) at P that
+//! does work on joint i alone:
 //!
-//! - u_i = f_i · Ṗ + n_i · ω, with the platform point's velocity and the platform's angular velocity;
+//! - u_i = f_i · Ṗ + n_i · ω, with the velocity of the platform point and the platform's angular
+//!   velocity;
 //! - ∂u_i/∂v = (f_i, p × f_i + n_i) D, the reduced Jacobian (p from the platform's origin to P);
-//! - u̇_i = f_i · (P̈ - b) + n_i · (ω̇ - β), with the bias accelerations b, β of the leg's end at u̇ = 0.
+//! - u̇_i = f_i · (P̈ - b) + n_i · (ω̇ - β), with the bias accelerations b, β of the leg's end at
+//!   u̇ = 0.
 //!
-//! No matrix of the size of the robot is formed, and nothing is divided but by the leg determinants.
+//! No matrix of the size of the robot is formed, and the only divisors are the leg determinants.
 
 use super::bias::BiasTerm;
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
@@ -24,7 +27,7 @@ use nalgebra::DMatrix;
 /// A wrench as factor × (force, moment).
 #[derive(Debug, Clone, Copy)]
 pub struct FactoredWrench<'a> {
-    /// The factor with the reciprocal of the determinant.
+    /// The factor, which contains the reciprocal of the determinant.
     pub factor: Expr<'a>,
     /// Force, and moment about P.
     pub wrench: Wrench<'a>,
@@ -38,34 +41,36 @@ pub(crate) struct ClosureRows {
     pub(crate) remaining: Vec<usize>,
 }
 
-/// The closure of a leg: its Jacobian's inverse as wrenches.
+/// Closure of a leg: the inverse of its Jacobian as wrenches.
 #[derive(Debug, Clone)]
 pub struct LegClosure<'a> {
     /// f_i of every u_i, in the base frame.
     pub forces: Vec<Vector3<'a>>,
     /// n_i of every u_i, in the base frame.
     pub moments: Vec<Vector3<'a>>,
-    /// The same wrenches in the leg's axes, with the reciprocals of the determinants taken out.
+    /// The same wrenches in the leg's axes, without the reciprocals of the determinants.
     pub wrenches: Vec<FactoredWrench<'a>>,
-    /// The determinant that each row was divided by.
+    /// The determinant by which each row was divided.
     pub determinants: Vec<Expr<'a>>,
     /// The determinant of the leg's Jacobian J_k.
     pub determinant: Expr<'a>,
     /// P in the platform frame.
     pub at: [Number; 3],
-    /// From the platform's origin to P, in the base frame.
+    /// Vector from the platform's origin to P, in the base frame.
     pub arm: Vector3<'a>,
-    /// The orientation of the leg's axes in the base frame.
+    /// Orientation of the leg's axes in the base frame.
     pub axes: Matrix3<'a>,
-    /// Wrenches in the leg's axes that do no work on any joint's motion, one for each shared row beyond those of the
-    /// joints: the constraints on a platform with parasitic motion.
+    /// Wrenches in the leg's axes that do no work on any joint's motion: the constraints on a
+    /// platform with parasitic motion.
+    ///
+    /// There is one for each shared row beyond those of the joints.
     pub(crate) blocked: Vec<FactoredWrench<'a>>,
-    /// In which directions the independent coordinates move what the leg ends on.
+    /// Directions in which the independent coordinates move the body at the leg's end.
     directions: Directions<'a>,
 }
 
 impl<'a> FactoredWrench<'a> {
-    /// Its product with a motion, or with a small displacement.
+    /// Product of the wrench with a motion or a small displacement.
     pub(crate) fn along(&self, motion: &SpatialMotion<'a>) -> Expr<'a> {
         self.factor * self.wrench.power(motion)
     }
@@ -77,8 +82,9 @@ impl<'a> FactoredWrench<'a> {
 }
 
 impl<'a> LegClosure<'a> {
-    /// Derives the closure. `home` evaluates an expression at the home configuration. `None` for a structurally
-    /// singular leg.
+    /// Derives the closure. `home` evaluates an expression at the home configuration.
+    ///
+    /// `None` for a structurally singular leg.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
@@ -158,7 +164,7 @@ impl<'a> LegClosure<'a> {
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
 
-    /// Partial velocities of the leg's end, in the leg's axes, of those of the origin of what the leg ends on.
+    /// Partial velocities of the leg's end in the leg's axes, from those of the end body's origin.
     fn ends(&self, partials: &[SpatialMotion<'a>]) -> Vec<SpatialMotion<'a>> {
         let end = |partial: &SpatialMotion<'a>| SpatialMotion {
             linear: self.turned_in(partial.linear_at(self.arm)),
@@ -167,8 +173,9 @@ impl<'a> LegClosure<'a> {
         partials.iter().map(end).collect()
     }
 
-    /// The velocity of the leg's end per independent coordinate, in the axes in which the closure sees what the leg
-    /// ends on; with `partials`, per coordinate of these.
+    /// Velocity of the leg's end per independent coordinate, in the observer's axes.
+    ///
+    /// With `partials`, per coordinate of these.
     pub(crate) fn end_velocities(
         &self,
         arena: &'a Arena,
@@ -186,7 +193,7 @@ impl<'a> LegClosure<'a> {
         }
     }
 
-    /// The joints' rates per coordinate of `partials`. All rows share the velocities of the leg's end.
+    /// Joint rates per coordinate of `partials`. All rows share the velocities of the leg's end.
     #[must_use]
     pub(crate) fn rows_on(&self, partials: &[SpatialMotion<'a>]) -> Rows<'a> {
         let ends = self.ends(partials);
@@ -197,7 +204,8 @@ impl<'a> LegClosure<'a> {
         self.wrenches.iter().map(row).collect()
     }
 
-    /// The generalised forces on the coordinates of `partials` of the forces s on the u, as one force at the leg's end.
+    /// Generalised forces on the coordinates of `partials`: the forces s on the u as one force at
+    /// the end.
     #[must_use]
     pub(crate) fn project_on(
         &self,
@@ -206,7 +214,7 @@ impl<'a> LegClosure<'a> {
     ) -> Vec<Expr<'a>> {
         let parts = self.wrenches.iter().zip(forces);
         let zero = Vector3::zero(self.determinant.arena());
-        // The products of factors and forces are had for the rows anyway.
+        // The rows need the products of factors and forces anyway.
         let force = parts.fold(zero, |sum, (w, s)| {
             sum + w.wrench.force.scaled(w.factor).scaled(*s)
         });
@@ -214,7 +222,7 @@ impl<'a> LegClosure<'a> {
         ends.map(|end| force.dot(end.linear)).collect()
     }
 
-    /// ∂u_i/∂v times a factor that divisors of the row vanish in.
+    /// ∂u_i/∂v times a factor that cancels divisors of the row.
     #[must_use]
     pub(crate) fn reduced_row(&self, rate: usize, factor: Expr<'a>) -> Vec<Expr<'a>> {
         let wrench = Wrench {
@@ -224,8 +232,9 @@ impl<'a> LegClosure<'a> {
         self.directions.components(self.arm, wrench)
     }
 
-    /// Whether the forces s on the u are projected with fewer products as one force at the leg's end
-    /// than row by row: not with a moment at the end, nor where few rows take part.
+    /// Whether projecting the forces s on the u as one force at the leg's end takes fewer products.
+    ///
+    /// It does not if the end has a moment, or if few rows take part.
     #[must_use]
     pub(crate) fn is_shorter_at_end(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> bool {
         let parts = || (0..forces.len()).filter(|&i| !forces[i].is_zero());
@@ -253,7 +262,7 @@ impl<'a> LegClosure<'a> {
     #[must_use]
     pub(crate) fn project_at_end(&self, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let zero = Vector3::zero(self.determinant.arena());
-        // Where the end moves along axes, its components are had for the rows of the reduced Jacobian anyway.
+        // If the end moves along axes, the rows of the reduced Jacobian need its components anyway.
         let force = if matches!(self.directions, Directions::Axes(_)) || self.is_in_base() {
             let parts = self.forces.iter().zip(forces);
             parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s))
@@ -271,7 +280,7 @@ impl<'a> LegClosure<'a> {
         self.directions.components(self.arm, wrench)
     }
 
-    /// The rows A of what no joint feels, per component of the platform's velocity.
+    /// The rows A of the constraint wrenches, per component of the platform's velocity.
     #[must_use]
     pub(crate) fn blocked_rows(&self) -> Rows<'a> {
         let row = |wrench: &FactoredWrench<'a>| {
@@ -285,7 +294,7 @@ impl<'a> LegClosure<'a> {
         self.blocked.iter().map(row).collect()
     }
 
-    /// The acceleration of the leg's end along a wrench that no joint feels, less its bias.
+    /// Acceleration of the leg's end along a constraint wrench, minus its bias.
     #[must_use]
     pub(crate) fn blocked_acceleration(
         &self,
@@ -299,7 +308,7 @@ impl<'a> LegClosure<'a> {
         self.blocked[at].along(&acceleration.minus(&bias))
     }
 
-    /// The quasi-velocities u for a platform motion.
+    /// Quasi-velocities u for a platform motion.
     #[must_use]
     pub fn velocities(&self, motion: &PlatformMotion<'a>) -> Vec<Expr<'a>> {
         let velocity = motion.point_velocity(self.arm);
@@ -309,7 +318,7 @@ impl<'a> LegClosure<'a> {
         })
     }
 
-    /// The acceleration of the leg's end, in the leg's axes.
+    /// Acceleration of the leg's end, in the leg's axes.
     fn end_acceleration(&self, motion: &PlatformMotion<'a>) -> SpatialMotion<'a> {
         SpatialMotion {
             linear: self.turned_in(motion.point_acceleration(self.at, self.arm)),
@@ -317,12 +326,12 @@ impl<'a> LegClosure<'a> {
         }
     }
 
-    /// The derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
+    /// Derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
     ///
-    /// Where the products of the wrenches with the links are known already (in a plane they are the
-    /// links' lengths and cosines of joint angles), the bias is taken term by term and the determinant
-    /// is divided out last; else the bias is added up as a vector first. `names` are those of the end's
-    /// acceleration along each wrench, less the bias of constant product.
+    /// If the products of the wrenches with the links are known, the bias is computed term by term,
+    /// and divided by the determinant last. In a plane they are link lengths and cosines of joint
+    /// angles. Otherwise the bias is summed as a vector first. `names` are those of the end's
+    /// acceleration along each wrench, minus the bias terms of constant product.
     #[must_use]
     pub fn accelerations(
         &self,
@@ -351,7 +360,7 @@ impl<'a> LegClosure<'a> {
         self.apply(&acceleration.minus(&summed(arena, bias)))
     }
 
-    /// The products of all wrenches with all bias terms, if each is a constant or a known node.
+    /// Products of all wrenches with all bias terms, if each is a constant or a known node.
     fn bias_products(&self, arena: &'a Arena, bias: &[BiasTerm<'a>]) -> Option<Rows<'a>> {
         let known = arena.len();
         let product = |wrench: &FactoredWrench<'a>, term: &BiasTerm<'a>| {
@@ -364,11 +373,11 @@ impl<'a> LegClosure<'a> {
         self.wrenches.iter().map(row).collect()
     }
 
-    /// Σ of the wrenches' products with a motion of the leg's end, all in the leg's axes.
+    /// Products of the wrenches with a motion of the leg's end, all in the leg's axes.
     fn apply(&self, motion: &SpatialMotion<'a>) -> Vec<Expr<'a>> {
         let one = |wrench: &FactoredWrench<'a>| {
             if self.is_in_base() {
-                // Factor and force are multiplied anyway, for the reduced Jacobian.
+                // The reduced Jacobian needs the product of factor and force anyway.
                 let (f, n) = (wrench.wrench.force, wrench.wrench.moment);
                 let k = wrench.factor;
                 return f.scaled(k).dot(motion.linear) + n.scaled(k).dot(motion.angular);
@@ -395,7 +404,7 @@ fn summed<'a>(arena: &'a Arena, bias: &[BiasTerm<'a>]) -> SpatialMotion<'a> {
     })
 }
 
-/// The wrench along a component of the end's motion, less its parts that act on joints: reciprocal to all joints.
+/// Wrench along a component of the end's motion, made reciprocal to all joints.
 fn blocked<'a>(
     arena: &'a Arena,
     row: usize,
@@ -424,8 +433,9 @@ fn blocked<'a>(
     }
 }
 
-/// Splits the shared rows of a leg's end, in the leg's axes: independent are those that determine the joint rates best
-/// at home.
+/// Splits the shared rows of a leg's end, in the leg's axes.
+///
+/// The independent rows are those that best determine the joint rates at home.
 pub(crate) fn split_rows<'a>(
     arena: &'a Arena,
     leg: &Leg,

@@ -1,4 +1,5 @@
-//! Closure of legs and reduced Jacobians, eqs. (9) to (13), and the velocity of a platform with parasitic motion.
+//! Closure of legs and reduced Jacobians, eqs. (9) to (13); velocity of platforms with parasitic
+//! motion.
 
 pub(crate) mod bias;
 pub(crate) mod leg;

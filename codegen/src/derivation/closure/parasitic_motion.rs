@@ -1,9 +1,9 @@
-//! A platform that moves parasitic_motion: its legs block directions A t = 0 that change with the pose, so that of the
-//! six components of its velocity t the independent ones v give the others.
+//! Parasitic motion: the legs block directions A t = 0 of the platform, which change with its pose.
 //!
-//! With the rows A split by coordinates into those of the independent ones and the dependent ones, t = D v,
-//! where D is the identity on the independent coordinates and -A_d⁻¹ A_i on the others; what is derived per
-//! component of t, rows of reduced Jacobians and forces, goes to v by D.
+//! The independent components v of its velocity t then determine the others. With A split into the
+//! columns A_i of independent and A_d of dependent components, t = D v: D is the identity on the
+//! independent components and -A_d⁻¹ A_i on the dependent ones. Quantities per component of t, such
+//! as rows of reduced Jacobians and forces, are projected on v by D.
 
 use crate::cas::{Arena, Expr, Vector3};
 use crate::derivation::kinematics::spatial::SpatialMotion;
@@ -11,7 +11,7 @@ use crate::derivation::linear_algebra::constant_columns::Solved;
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::linear_algebra::linear::{apply, transposed};
 
-/// Components of a free body's velocity.
+/// Number of components of a free body's velocity.
 pub(crate) const SIX: usize = 6;
 
 /// A row of A: a constraint that a leg imposes on the platform's velocity.
@@ -19,7 +19,7 @@ pub(crate) const SIX: usize = 6;
 pub(crate) struct BlockedRow<'a> {
     /// The leg.
     pub(crate) leg: usize,
-    /// The number of the constraint among those of the leg.
+    /// Index of the constraint among those of the leg.
     pub(crate) index: usize,
     /// The row, per component of t.
     pub(crate) entries: Vec<Expr<'a>>,
@@ -30,12 +30,12 @@ pub(crate) fn dependent_components(independent: &[usize]) -> Vec<usize> {
     (0..SIX).filter(|at| !independent.contains(at)).collect()
 }
 
-/// How the velocity of a platform with parasitic motion follows from its independent coordinates.
+/// Velocity of a platform with parasitic motion from its independent coordinates.
 #[derive(Debug)]
 pub struct ParasiticMotion<'a> {
-    /// Which components of t the independent coordinates are.
+    /// The independent components of t.
     independent: Vec<usize>,
-    /// The others.
+    /// The dependent components of t.
     pub(crate) dependent: Vec<usize>,
     /// The rows of A.
     pub(crate) rows: Vec<BlockedRow<'a>>,
@@ -48,9 +48,10 @@ pub struct ParasiticMotion<'a> {
 }
 
 impl<'a> ParasiticMotion<'a> {
-    /// Solves rows of A, as many as there are dependent coordinates. `independent` are the components of t that are
-    /// independent; `home` evaluates an expression at the home configuration. `None` if the rows do not determine the
-    /// dependent components.
+    /// Solves rows of A, as many as there are dependent components.
+    ///
+    /// `independent` are the independent components of t; `home` evaluates an expression at the
+    /// home configuration. `None` if the rows do not determine the dependent components.
     pub(crate) fn new(
         independent: Vec<usize>,
         rows: Vec<BlockedRow<'a>>,
@@ -82,12 +83,12 @@ impl<'a> ParasiticMotion<'a> {
         })
     }
 
-    /// t of the independent velocities.
+    /// t from the independent velocities.
     pub(crate) fn velocity(&self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
         self.together(twist, &apply(&self.follow, twist))
     }
 
-    /// Six components from the independent ones and the others.
+    /// Merges independent and dependent components into six.
     pub(crate) fn together(&self, own: &[Expr<'a>], others: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let component = |at: usize| match self.independent.iter().position(|&own| own == at) {
             Some(place) => own[place],
@@ -99,7 +100,7 @@ impl<'a> ParasiticMotion<'a> {
         (0..SIX).map(component).collect()
     }
 
-    /// Dᵀ of six components: forces, or a row per component of t.
+    /// Dᵀ times six components: forces, or a row per component of t.
     pub(crate) fn on_independent(&self, six: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let entry = |(column, &own): (usize, &usize)| {
             let others = self.dependent.iter().zip(&self.follow);
@@ -108,7 +109,7 @@ impl<'a> ParasiticMotion<'a> {
         self.independent.iter().enumerate().map(entry).collect()
     }
 
-    /// The columns of D: velocity of the platform's origin and angular velocity per independent rate.
+    /// Columns of D: velocity of the platform's origin and angular velocity per independent rate.
     pub(crate) fn partials(&self, arena: &'a Arena) -> Vec<SpatialMotion<'a>> {
         let rows = self.platform_jacobian(arena);
         let part = |column: usize, first: usize| {

@@ -1,4 +1,4 @@
-//! Forces on actuated joints themselves, which their actuators balance directly.
+//! Forces on actuated joints, which their actuators balance directly.
 
 use crate::cas::Expr;
 use crate::derivation::robot::Robot;
@@ -12,7 +12,7 @@ struct ActuatedRate {
     actuator: usize,
 }
 
-/// The forces that act on the rates of actuated joints alone.
+/// Forces that act on the rates of actuated joints alone.
 #[derive(Debug, Default)]
 pub(crate) struct ActuatedJointForces<'a> {
     /// The actuated joints whose rate is a quasi-velocity.
@@ -22,7 +22,8 @@ pub(crate) struct ActuatedJointForces<'a> {
 }
 
 impl<'a> ActuatedJointForces<'a> {
-    /// No forces yet. They are separated if the robot has as many actuators as independent coordinates.
+    /// No forces yet. They are separated if the robot has as many actuators as independent
+    /// coordinates.
     pub(crate) fn of(robot: &Robot<'a>) -> Self {
         let mechanism = robot.mechanism;
         let actuated = mechanism.actuated();
@@ -54,7 +55,7 @@ impl<'a> ActuatedJointForces<'a> {
         }
     }
 
-    /// The actuator torques: these forces and those that balance the rest.
+    /// Actuator torques: these forces plus those that balance the rest.
     pub(crate) fn with(self, rest: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
         if self.forces.is_empty() {
             return rest;

@@ -1,12 +1,14 @@
-//! The mass matrix of a leg by composite rigid bodies, in the frames' own axes.
+//! Mass matrix of a leg by composite rigid bodies, in the frames' own axes.
 //!
-//! Masses, first moments and inertias are summed from the tips to the base. A column of the matrix is the
-//! forces on the quasi-velocities for one quasi-acceleration alone, from rest. Behind the last joint that it
-//! moves all bodies move as one, and the wrench of this body is transferred joint by joint towards the base. Forces on
-//! the quasi-velocities on the way are its components there, so every pair of quasi-velocities occurs once.
+//! Masses, first moments and inertias are summed from the tips to the base. A column of the matrix
+//! is the generalised forces for one quasi-acceleration alone, from rest. Beyond the last joint
+//! that it moves, all bodies move as one. The wrench of this composite body is transferred joint by
+//! joint towards the base. The forces on the quasi-velocities are its components on the way, so
+//! every pair of them occurs once.
 //!
-//! Along a run of parallel axes, whose quasi-velocities are absolute rates, a body behind does not turn with
-//! the one before it: it is a mass at the end of a lever, and its moment is none of the other's.
+//! Along a run of parallel axes the quasi-velocities are absolute rates: a body does not rotate
+//! with the one before it. It acts as a mass at the end of a lever, and its moment does not act on
+//! the body before.
 
 use crate::cas::{Arena, Expr, Vector3};
 use crate::derivation::bodies::inertia::Inertia;
@@ -20,20 +22,20 @@ use crate::derivation::robot::Robot;
 use crate::mechanism::{End, JointKind, Leg};
 use overact_description::StandardParameter;
 
-/// A joint with the body behind it.
+/// A joint and the body that it moves.
 struct Link<'a> {
     turn: Turn<'a>,
     /// From the antecedent's origin, in the antecedent frame.
     at: Vector3<'a>,
     /// The joints that start from this one.
     next: Vec<usize>,
-    /// The body itself.
+    /// Inertia of the body.
     own: Inertia<'a>,
-    /// The body and all that is behind it.
+    /// Inertia of the body and all bodies beyond it.
     whole: Inertia<'a>,
-    /// The same in the axes of the antecedent frame.
+    /// The composite inertia in the axes of the antecedent frame.
     turned: Inertia<'a>,
-    /// The motor's inertia.
+    /// Rotor inertia.
     motor: Expr<'a>,
 }
 
@@ -45,15 +47,16 @@ pub(crate) struct Chain<'c, 'a> {
     links: Vec<Link<'a>>,
 }
 
-/// What acts on a joint: the moment about its axis less that of bodies behind in its run of parallel axes,
-/// and the force along its axis.
+/// Load on a joint: the moment about its axis and the force along it.
+///
+/// The moment excludes that of later bodies in the joint's run of parallel axes.
 #[derive(Clone, Copy)]
 struct OnJoint<'a> {
     moment: Expr<'a>,
     force: Expr<'a>,
 }
 
-/// A joint's wrench in the axes of the joint's antecedent.
+/// Wrench on a joint in the axes of the joint's antecedent.
 pub(crate) struct OnAntecedent<'a> {
     /// The wrench at the joint's origin.
     pub(crate) at_joint: Wrench<'a>,
@@ -71,7 +74,7 @@ impl<'a> OnAntecedent<'a> {
     }
 }
 
-/// What a wrench on a body does on its way to the base.
+/// Forces of a wrench on a body, transferred to the base.
 pub(crate) struct WrenchToBase<'a> {
     /// The forces on the quasi-velocities of the leg.
     pub(crate) forces: Vec<Expr<'a>>,
@@ -80,8 +83,9 @@ pub(crate) struct WrenchToBase<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// The upper triangle of a leg's mass matrix in its quasi-velocities: row i from column i on. `None`
-    /// if a sine or cosine does not follow from the configuration.
+    /// Upper triangle of a leg's mass matrix in its quasi-velocities: row i from column i on.
+    ///
+    /// `None` if the configuration does not determine a sine or cosine.
     pub(crate) fn leg_masses(
         &self,
         index: usize,
@@ -136,7 +140,7 @@ impl<'a> Robot<'a> {
 }
 
 impl<'a> Chain<'_, 'a> {
-    /// Adds up bodies from the tips to the base.
+    /// Sums inertias from the tips to the base.
     pub(crate) fn add_up(&mut self) {
         for j in (0..self.links.len()).rev() {
             let link = &self.links[j];
@@ -151,7 +155,8 @@ impl<'a> Chain<'_, 'a> {
         }
     }
 
-    /// All bodies in the axes of the leg's base, about its origin, once they are added up.
+    /// The sum of all bodies about the leg's base, in its axes; call after
+    /// [`add_up`](Self::add_up).
     pub(crate) fn at_base(&self) -> Inertia<'a> {
         let first = self.roots().map(|j| &self.links[j]);
         first.fold(Inertia::zero(self.arena), |sum, link| {
@@ -159,7 +164,7 @@ impl<'a> Chain<'_, 'a> {
         })
     }
 
-    /// Makes another inertia, in a body's frame, a part of the body.
+    /// Adds another inertia, in a body's frame, to the body.
     pub(crate) fn carry(&mut self, j: usize, other: &Inertia<'a>) {
         let still = Vector3::zero(self.arena);
         self.links[j].own = other.moved_onto(&self.links[j].own, still);
@@ -169,7 +174,7 @@ impl<'a> Chain<'_, 'a> {
         self.arena
     }
 
-    /// The bodies, each by itself.
+    /// Inertias of the single bodies.
     pub(crate) fn bodies(&self) -> Vec<Inertia<'a>> {
         self.links.iter().map(|link| link.own).collect()
     }
@@ -182,7 +187,7 @@ impl<'a> Chain<'_, 'a> {
         self.leg.joints[j].antecedent
     }
 
-    /// What the leg ends on.
+    /// The leg's end.
     pub(crate) const fn end(&self) -> Option<&End> {
         self.leg.end.as_ref()
     }
@@ -192,7 +197,8 @@ impl<'a> Chain<'_, 'a> {
         self.links[j].at + self.links[j].turn.back(point)
     }
 
-    /// What an inertia in a joint's frame, which its motion leaves as it is, adds to the antecedent's.
+    /// An inertia in a joint's frame that is invariant under its motion, added to that of the
+    /// antecedent.
     pub(crate) fn moved_onto(&self, of: &Inertia<'a>, onto: &Inertia<'a>, j: usize) -> Inertia<'a> {
         let link = &self.links[j];
         of.turned_back(&link.turn).moved_onto(onto, link.at)
@@ -208,7 +214,8 @@ impl<'a> Chain<'_, 'a> {
         }
     }
 
-    /// The wrench about the base's origin, in its axes, for the quasi-acceleration k. `None` where nothing moves.
+    /// Wrench about the base's origin, in its axes, for the quasi-acceleration k. `None` if no body
+    /// moves.
     pub(crate) fn base_wrench(&self, k: usize) -> Option<Wrench<'a>> {
         let mut on = vec![self.nothing(); self.links.len()];
         let still = SpatialMotion::zero(self.arena);
@@ -220,7 +227,7 @@ impl<'a> Chain<'_, 'a> {
         moved.reduce(|sum, one| sum.plus(&one))
     }
 
-    /// The forces on the quasi-velocities, and the wrench on the base, of a wrench at the origin of a body's frame.
+    /// Forces on the quasi-velocities and on the base of a wrench at the origin of a body's frame.
     pub(crate) fn project_to_base(&self, body: usize, wrench: Wrench<'a>) -> WrenchToBase<'a> {
         let mut wrench = wrench;
         let rates = &self.state.rates;
@@ -257,7 +264,7 @@ impl<'a> Chain<'_, 'a> {
         }
     }
 
-    /// The forces on the quasi-velocities up to k for the quasi-acceleration k.
+    /// Forces on the quasi-velocities up to k for the quasi-acceleration k.
     pub(crate) fn column(&self, k: usize) -> Vec<Expr<'a>> {
         let zero = self.arena.zero();
         let mut on = vec![self.nothing(); self.links.len()];
@@ -288,8 +295,10 @@ impl<'a> Chain<'_, 'a> {
         (0..self.links.len()).filter(|&j| self.leg.joints[j].antecedent.is_none())
     }
 
-    /// The wrench about a joint's origin, in the antecedent's axes, of all bodies behind the joint, for the
-    /// quasi-acceleration k and the acceleration of the antecedent frame. `None` where nothing moves.
+    /// Wrench about a joint's origin of all bodies beyond the joint, in the antecedent's axes.
+    ///
+    /// It is that of the quasi-acceleration k and the acceleration of the antecedent frame. `None`
+    /// if no body moves.
     fn wrench(
         &self,
         j: usize,
@@ -356,8 +365,8 @@ impl<'a> Chain<'_, 'a> {
         names.give();
     }
 
-    /// Whether all behind a joint moves as one body for the quasi-acceleration k, and nothing there is
-    /// asked for.
+    /// Whether all bodies beyond a joint move as one for the quasi-acceleration k, and no force on
+    /// their joints is needed.
     fn is_one(&self, j: usize, k: usize) -> bool {
         let runs_on = |c: &usize| self.state.rates.run[*c].is_some();
         let splits = self.counts(j, k) && self.links[j].next.iter().any(runs_on);
@@ -365,7 +374,7 @@ impl<'a> Chain<'_, 'a> {
         !splits && !behind.any(|c| self.is_moved(c, k) || self.counts(c, k))
     }
 
-    /// Whether the force on a joint is part of one on the quasi-velocities up to k.
+    /// Whether the force on a joint contributes to one on the quasi-velocities up to k.
     fn counts(&self, j: usize, k: usize) -> bool {
         let slides = self.leg.joints[j].kind == JointKind::Prismatic;
         let rates = &self.state.rates;
@@ -379,7 +388,7 @@ impl<'a> Chain<'_, 'a> {
         !self.state.rates.joint[j].coefficient(k).is_zero()
     }
 
-    /// All joints behind a joint.
+    /// All joints beyond a joint.
     fn behind(&self, j: usize) -> impl Iterator<Item = usize> + '_ {
         let mut open = self.links[j].next.clone();
         std::iter::from_fn(move || {

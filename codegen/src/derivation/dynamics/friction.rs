@@ -1,11 +1,12 @@
 //! Friction of a joint per unit of each of its coefficients.
 //!
-//! Friction that differs by direction has the columns (q̇ ± |q̇|)/2 and (sign q̇ ± 1)/2. Their sums and
-//! differences are the columns of symmetric friction, of |q̇| and of the offset, as at every velocity so at
-//! rest, where the sign is 0. What dry friction has more at standstill than at speed falls with the velocity
-//! as 1/(1 + (q̇/v)²), v being the Stribeck velocity: the form of Hess and Soom (*Friction at a lubricated line
-//! contact operating at oscillating sliding velocities*, 1990), which takes no exponential. Friction in
-//! proportion to a load that is known as a function of the position has the column |load| sign q̇.
+//! Friction that differs by direction has the columns (q̇ ± |q̇|)/2 and (sign q̇ ± 1)/2. Their sums
+//! and differences are the columns of symmetric friction, of |q̇| and of the offset. This holds at
+//! every velocity and at rest, where the sign is 0. The excess of static friction over Coulomb
+//! friction decreases with the velocity as 1/(1 + (q̇/v)²), where v is the Stribeck velocity. This
+//! form needs no exponential (Hess and Soom, *Friction at a lubricated line contact operating at
+//! oscillating sliding velocities*, 1990). Load-dependent friction, with the load a known function
+//! of the position, has the column |load| sign q̇.
 
 use crate::cas::{Arena, Expr, Number, Ratio};
 use crate::derivation::robot::Robot;
@@ -13,7 +14,7 @@ use crate::mechanism::JointIndex;
 use overact_description::StandardParameter;
 
 impl<'a> Robot<'a> {
-    /// The friction at a rate per unit of a joint's parameter; none of a parameter that is no friction.
+    /// Friction at a rate per unit of a joint's parameter; `None` if it is no friction parameter.
     pub(crate) fn friction_force(
         &self,
         at: JointIndex,

@@ -1,8 +1,9 @@
-//! The mass matrix of the whole robot from those of its legs and the platform's inertia.
+//! Mass matrix of the whole robot from those of its legs and the platform's inertia.
 //!
-//! M = Σ Gᵀ M_leg G with the legs' reduced Jacobians G = ∂u/∂v, the upper triangle alone. A leg that ends
-//! in a point and feels no moment there has the rows of G from forces f_i at that point: it is then a mass
-//! tensor Λ = Σ f_i M_ij f_jᵀ at the arm p, whose parts on the twist are Λ, Λ [p]×ᵀ and [p]× Λ [p]×ᵀ.
+//! M = Σ Gᵀ M_leg G with the legs' reduced Jacobians G = ∂u/∂v; only the upper triangle is
+//! computed. If a leg ends in a point and no joint moves its end's rotation, the rows of G are
+//! forces f_i at that point. The leg is then a mass tensor Λ = Σ f_i M_ij f_jᵀ at the arm p, with
+//! the blocks Λ, Λ [p]×ᵀ and [p]× Λ [p]×ᵀ.
 
 use crate::cas::{Expr, Matrix3, Vector3};
 use crate::derivation::bodies::inertia::Inertia;
@@ -16,7 +17,7 @@ use crate::derivation::robot::Robot;
 use crate::mechanism::TwistCoordinate;
 
 impl<'a> Robot<'a> {
-    /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
+    /// M for given parameters. `None` if the configuration does not determine a sine or cosine.
     pub(crate) fn masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
         // Platforms carry no legs.
         if self
@@ -30,7 +31,7 @@ impl<'a> Robot<'a> {
         let dof = self.mechanism.dof();
         let square = |size: usize| vec![vec![self.arena.zero(); size]; size];
         let mut sum = square(dof);
-        // Of a platform that moves parasitic_motion: what is had per component of its velocity.
+        // Quantities per component of the velocity of a platform with parasitic motion.
         let mut free = square(self.free.len());
         for (index, state) in self.legs.iter().enumerate() {
             let name = &self.mechanism.legs[index].name;
@@ -95,7 +96,7 @@ impl<'a> Robot<'a> {
         Some((0..dof).map(row).collect())
     }
 
-    /// The mass matrix of all that moves with the platform.
+    /// Mass matrix of all bodies that move with the platform.
     fn platform_masses(
         &self,
         values: &[(BodyParameter, Expr<'a>)],
@@ -122,7 +123,7 @@ impl<'a> Robot<'a> {
         )
     }
 
-    /// The inertia of all that moves with the platform, in the platform's frame.
+    /// Inertia of all bodies that move with the platform, in the platform's frame.
     pub(crate) fn platform_inertia(&self, values: &[(BodyParameter, Expr<'a>)]) -> Inertia<'a> {
         let mut whole = Inertia::of(self.arena, values, &|p| p.of_platform());
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
@@ -139,7 +140,7 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// Adds to the upper triangle.
+/// Adds to the upper triangle of a matrix.
 fn add<'a>(sum: &mut Rows<'a>, part: &dyn Fn(usize, usize) -> Expr<'a>) {
     for (a, row) in sum.iter_mut().enumerate() {
         for (b, entry) in row.iter_mut().enumerate().skip(a) {
@@ -148,13 +149,13 @@ fn add<'a>(sum: &mut Rows<'a>, part: &dyn Fn(usize, usize) -> Expr<'a>) {
     }
 }
 
-/// The entries on the twist coordinates of a mass tensor at an arm.
+/// Entries on the twist coordinates of a mass tensor at an arm.
 fn on_twist<'a>(
     twist: &[TwistCoordinate],
     tensor: Matrix3<'a>,
     arm: Vector3<'a>,
 ) -> impl Fn(usize, usize) -> Expr<'a> {
-    // Row i of Λ [p]×ᵀ is p × Λ_i; column j of [p]× Λ [p]×ᵀ is p × (column j of that).
+    // Row i of Λ [p]×ᵀ is p × Λ_i; column j of [p]× Λ [p]×ᵀ is p × (column j of Λ [p]×ᵀ).
     let mixed = Matrix3(std::array::from_fn(|i| arm.cross(tensor.row(i)).0));
     let turning = Matrix3(std::array::from_fn(|j| arm.cross(mixed.column(j)).0));
     move |a, b| match (twist[a], twist[b]) {
@@ -166,7 +167,7 @@ fn on_twist<'a>(
 }
 
 impl<'a> LegClosure<'a> {
-    /// Whether no joint feels a moment at the leg's end.
+    /// Whether a moment at the leg's end loads no joint.
     pub(crate) fn feels_no_moment(&self) -> bool {
         self.moments.iter().all(|moment| moment.is_zero())
     }

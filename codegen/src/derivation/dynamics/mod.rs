@@ -1,4 +1,4 @@
-//! Dynamics with given parameters: joint forces, mass matrices, and the recursion of Newton and Euler.
+//! Dynamics with given parameters: joint forces, mass matrices, and the Newton-Euler recursion.
 
 pub(crate) mod actuated_joint_forces;
 pub(crate) mod composite;

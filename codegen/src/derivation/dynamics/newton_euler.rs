@@ -1,12 +1,13 @@
-//! Forces for a motion in the order of Newton and Euler: those of all bodies are summed once on the way
-//! from the tips to the base, where the joints read them off.
+//! Generalised forces of a motion by the Newton-Euler recursion: wrenches of all bodies are summed
+//! once from the tips to the base, and joint forces are their components on the way.
 //!
-//! Before that, what a joint leaves as it is of the body behind it is counted to the body before it: a
-//! revolute joint mass, first moment along its axis and the inertia of a rod along it, a prismatic one the
-//! inertia. Which torques the robot needs does not change, and the bodies behind have fewer parameters.
+//! Before that, inertia that a joint's motion leaves invariant is moved to the body before the
+//! joint. For a revolute joint these are the mass, the first moment along its axis, and the inertia
+//! of a rod along it; for a prismatic joint it is the inertia. The torques of the robot do not
+//! change, and later bodies have fewer parameters.
 //!
-//! Legs that stand on a body of another, chains and branches, hand their whole wrench down to it: legs are
-//! taken from the last to the first, for a body that carries one belongs to a leg before.
+//! Legs that are mounted on a body of another leg, chains and branches, transfer their whole wrench
+//! to it. The body belongs to an earlier leg, so legs are processed from the last to the first.
 
 use super::actuated_joint_forces::ActuatedJointForces;
 use super::composite::Chain;
@@ -23,8 +24,9 @@ use crate::derivation::robot::Robot;
 use crate::mechanism::{End, JointIndex, JointKind, Leg};
 
 impl<'a> Robot<'a> {
-    /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
-    /// does not follow from the configuration.
+    /// Γ¹ for given parameters; forces on actuated joints alone go to `actuators`.
+    ///
+    /// `None` if the configuration does not determine a sine or cosine.
     pub(crate) fn summed_forces(
         &self,
         motion: &RobotMotion<'a>,
@@ -32,7 +34,8 @@ impl<'a> Robot<'a> {
         actuators: &mut ActuatedJointForces<'a>,
     ) -> Option<Vec<Expr<'a>>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
-        // Of a platform that moves parasitic_motion: what all put on its six components, which goes to the others at once.
+        // Forces on the six components of a platform with parasitic motion, projected together at
+        // the end.
         let mut free = vec![self.arena.zero(); self.free.len()];
         let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
         let partials = partials.map(|parasitic| parasitic.partials(self.arena));
@@ -89,7 +92,7 @@ impl<'a> Robot<'a> {
         Some(total)
     }
 
-    /// The forces on the quasi-velocities of all legs.
+    /// Forces on the quasi-velocities of all legs.
     fn forces_of_legs(
         &self,
         motion: &RobotMotion<'a>,
@@ -110,7 +113,8 @@ impl<'a> Robot<'a> {
         Some(all)
     }
 
-    /// The forces on the quasi-velocities of a leg; its base hands its wrench on to the body that it stands on.
+    /// Forces on the quasi-velocities of a leg; the wrench at its base is transferred to its base
+    /// body.
     fn summed_leg_forces(
         &self,
         motion: &RobotMotion<'a>,
@@ -179,11 +183,11 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// What legs transfer to the bodies on which they are mounted.
+/// Inertias and wrenches that legs transfer to the bodies on which they are mounted.
 struct Transferred<'a> {
-    /// For the bodies of every leg, the parts of inertias of mounted legs that their joints do not move.
+    /// Inertias of mounted legs that their joints do not move, for the bodies of every leg.
     inertias: Vec<Vec<Option<Inertia<'a>>>>,
-    /// For the bodies of every leg, the wrenches of mounted legs.
+    /// Wrenches of mounted legs, for the bodies of every leg.
     wrenches: Vec<Vec<Wrench<'a>>>,
     /// End masses of legs that are lumped on the platform.
     on_platform: Inertia<'a>,
@@ -219,8 +223,8 @@ impl<'a> Transferred<'a> {
         *onto = with(end_mass, onto);
     }
 
-    /// Transfers to the body on which a leg is mounted the wrench at the leg's base, and the inertia that the leg's first
-    /// joints do not move.
+    /// Transfers to the base body of a leg the wrench at the leg's base, and the inertia that the
+    /// leg's first joints do not move.
     fn transfer_to_base_body(
         &mut self,
         arena: &'a Arena,
@@ -238,7 +242,7 @@ impl<'a> Transferred<'a> {
     }
 }
 
-/// Two inertias in one frame together.
+/// Sum of two inertias in one frame.
 fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
     one.moved_onto(other, Vector3::zero(one.mass.arena()))
 }
@@ -256,8 +260,10 @@ impl<'a> BodyMotion<'a> {
 }
 
 impl<'a> Chain<'_, 'a> {
-    /// Takes a mass at the end point from the last body of a leg, so that the rest has no first moment towards that point.
-    /// The mass is returned in the frame of the body at which the leg ends.
+    /// Removes a point mass at the end from a leg's last body, so that the rest has no first moment
+    /// towards it.
+    ///
+    /// Returns the mass in the frame of the body at which the leg ends.
     fn take_end_mass(&self, bodies: &mut [Inertia<'a>]) -> Option<Inertia<'a>> {
         let Some(End::Point {
             at,
@@ -291,8 +297,11 @@ impl<'a> Chain<'_, 'a> {
         Some(Inertia::point(mass).moved_onto(&Inertia::zero(arena), there))
     }
 
-    /// Moves the part of each body's inertia that its joint does not move onto the body before it. Returned is the part
-    /// that the first joints do not move, in the axes of the leg's base, if the base moves.
+    /// Moves the inertia that a joint does not move onto the body before it, for all bodies of a
+    /// leg.
+    ///
+    /// Returns the part that the first joints do not move, in the axes of the leg's base, if the
+    /// base moves.
     fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
         let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {

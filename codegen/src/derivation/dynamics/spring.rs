@@ -1,5 +1,5 @@
-//! What a joint's position adds to its torque: for each unit of a spring's unknown coefficient, and without
-//! any, as it is known.
+//! Position-dependent torques of joints: per unit of a spring's unknown coefficient, and known
+//! torques.
 
 use crate::cas::{Angle, Arena, Direction, Expr, Number, Ratio};
 use crate::derivation::guard::{Guard, GuardKind};
@@ -7,35 +7,34 @@ use crate::derivation::kinematics::joint::{joint_slide, joint_turn};
 use crate::derivation::robot::Robot;
 use crate::mechanism::{Formula, JointIndex, JointKind};
 
-/// The position of a joint: as a number, and as an angle where it turns.
+/// Position of a joint as a number, and as an angle if the joint is revolute.
 struct Position<'a> {
     number: Expr<'a>,
     turn: Direction,
 }
 
 impl<'a> Robot<'a> {
-    /// The torque of a joint's spring per unit of its coefficient; zero without a spring.
+    /// Torque of a joint's spring per unit of its coefficient; zero without a spring.
     pub(crate) fn spring_force(&self, at: JointIndex) -> Expr<'a> {
         let spring = self.mechanism.joint(at).spring.as_ref();
         let formula = spring.map(|spring| &spring.formula);
         self.torque_of_position(at, formula, &mut Vec::new())
     }
 
-    /// The torque of a joint's position that is known; zero where none is.
+    /// Known position-dependent torque of a joint; zero if it has none.
     pub(crate) fn known_force(&self, at: JointIndex) -> Expr<'a> {
         let known = self.mechanism.joint(at).known.as_ref();
         self.torque_of_position(at, known, &mut Vec::new())
     }
 
-    /// The load in proportion to which a joint has friction; zero where none is described.
+    /// Load to which a joint's friction is proportional; zero if none is described.
     pub(crate) fn load(&self, at: JointIndex) -> Expr<'a> {
         let load = self.mechanism.joint(at).load.as_ref();
         let formula = load.map(|load| &load.formula);
         self.torque_of_position(at, formula, &mut Vec::new())
     }
 
-    /// Conditions for the springs of all legs, and for the torques and loads that are known, to have a value: roots of
-    /// what is not negative.
+    /// Guards for springs, known torques and loads to have a value: radicands must not be negative.
     pub(crate) fn spring_guards(&self) -> Vec<Guard<'a>> {
         let mut guards = Vec::new();
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
@@ -50,7 +49,7 @@ impl<'a> Robot<'a> {
             }
             guards.extend(radicands.into_iter().map(|value| Guard {
                 value,
-                // A force has a value where a length vanishes, unless it divides by it.
+                // A force has a value if a length vanishes, unless the length is a divisor.
                 kind: GuardKind::Reach(0.0),
                 leg: leg.name.clone(),
             }));
@@ -70,7 +69,7 @@ impl<'a> Robot<'a> {
         value.unwrap_or_else(|| self.arena.zero())
     }
 
-    /// The position of a joint without its constant.
+    /// Position of a joint without its constant.
     fn position(&self, at: JointIndex) -> Option<Position<'a>> {
         let JointIndex { leg, joint: index } = at;
         let (of, first) = (&self.mechanism.legs[leg], self.legs[leg].first_joint);
@@ -90,7 +89,7 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// A formula at a position; `None` where an angle is beyond the range of numbers.
+/// A formula at a position; `None` if an angle exceeds the range of numbers.
 fn expression<'a>(
     arena: &'a Arena,
     formula: &Formula,

@@ -1,8 +1,9 @@
-//! The mass matrix of a robot in which legs stand on bodies of other legs: of all joints as a tree whose loops are
-//! open first, M_u, and then M = Gᵀ M_u G with the reduced Jacobian G = ∂u/∂v of all quasi-velocities.
+//! Mass matrix of a robot with legs on bodies of other legs: M = Gᵀ M_u G.
 //!
-//! A carried leg is one more body for the one that it stands on. A quasi-acceleration of its own hands a wrench
-//! down to that body, from which the joints before read off what couples them with it.
+//! M_u is the mass matrix of the tree of all joints with its loops opened, and G = ∂u/∂v is the
+//! reduced Jacobian of all quasi-velocities. A mounted leg acts as an additional body for its base
+//! body. Each of its quasi-accelerations produces a wrench on that body, whose components on the
+//! earlier joints couple the two.
 
 use super::composite::Chain;
 use crate::cas::{Arena, Expr, Vector3};
@@ -17,7 +18,7 @@ use crate::derivation::robot::Robot;
 use crate::mechanism::{BodyIndex, Leg};
 
 impl<'a> Robot<'a> {
-    /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
+    /// M for given parameters. `None` if the configuration does not determine a sine or cosine.
     pub(crate) fn tree_masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
         let of_tree = self.masses_of_joints(values)?;
         let legs = self.mechanism.legs.iter().zip(&self.legs);
@@ -81,7 +82,7 @@ impl<'a> Robot<'a> {
         Some(all)
     }
 
-    /// What a wrench at a leg's base puts on the quasi-velocities of the legs that carry it.
+    /// Forces of a wrench at a leg's base on the quasi-velocities of the legs that carry it.
     fn forces_on_base_legs(
         &self,
         chains: &[Chain<'_, 'a>],
@@ -102,13 +103,13 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// An inertia in a leg's base frame, in the frame of the body that the leg stands on.
+/// An inertia in a leg's base frame, in the frame of the leg's base body.
 pub(crate) fn on_carrier<'a>(arena: &'a Arena, leg: &Leg, at_base: &Inertia<'a>) -> Inertia<'a> {
     let turned = at_base.rotated(constant_rotation(arena, leg.base.rotation));
     turned.moved_onto(&Inertia::zero(arena), Vector3::constant(arena, leg.base.at))
 }
 
-/// A wrench at a leg's base, in its axes, as one about the frame of the body that the leg stands on.
+/// A wrench at a leg's base, in its axes, as one at the frame of the leg's base body.
 pub(crate) fn wrench_on_carrier<'a>(
     arena: &'a Arena,
     leg: &Leg,

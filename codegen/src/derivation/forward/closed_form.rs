@@ -1,16 +1,17 @@
-//! Forward kinematics in closed form: where distances alone decide the pose.
+//! Forward kinematics in closed form, for poses that are determined by distances alone.
 //!
-//! A leg whose closure gives one equation in its actuators and the platform point X alone, of the form
-//! |X|² + h · X + f = 0, keeps X on a sphere (a circle in a plane) about C = -h/2: the elbow's, when its
-//! last links are a rod. As many spheres as X has coordinates meet in two points:
+//! Suppose that a leg's closure gives one equation in its actuators and the platform point X alone:
+//! |X|² + h · X + f = 0. Then X lies on a sphere (a circle in a plane) about C = -h/2. If the last
+//! links are a rod, C is the elbow. As many spheres as X has coordinates intersect in two points:
 //!
 //! - two circles, eqs. (55) to (57): with w = C1 - C0 and s = (ρ0² - ρ1² + w²)/2,
 //!   X = C0 + (s w)/w² + t w⊥, t² = ρ0²/w² - (s/w²)²;
 //! - three spheres: with u = C1 - C0, v = C2 - C0 and n = u × v,
 //!   X = C0 + Y + t n, Y = (s1 v × n + s2 n × u)/n², t² = (ρ0² - Y²)/n².
 //!
-//! The sign of t is the assembly mode of the home configuration. A `point` or `translation` platform
-//! is solved by one meeting; a `planar` one by two, where two pairs of legs hold it at two points.
+//! The sign of t is the assembly mode of the home configuration. A `point` or `translation`
+//! platform takes one intersection. A `planar` one takes two, if two pairs of legs hold it at two
+//! points.
 
 use crate::cas::{
     Arena, CosineSine, Expr, Matrix3, Number, Ratio, Substitution, SymbolId, Vector3,
@@ -27,7 +28,7 @@ use crate::mechanism::{End, JointKind, Mechanism, Motion, TwistCoordinate};
 pub struct ClosedForm<'a> {
     /// The pose's coordinates.
     pub pose: Vec<Expr<'a>>,
-    /// Conditions for the spheres to meet, with the name of a leg that holds one.
+    /// Conditions for the spheres to intersect, with the name of a leg of the sphere.
     pub reach: Vec<(Reach<'a>, String)>,
 }
 
@@ -39,10 +40,10 @@ struct Sphere<'a> {
     square_radius: Expr<'a>,
 }
 
-/// Spheres that meet at home at an angle whose sine is smaller than this do not decide the pose.
+/// Smallest sine of the angle at which spheres intersect at home that determines the pose.
 const REGULAR: f64 = 1e-3;
 
-/// What the derivation works on.
+/// Input of the derivation.
 #[derive(Clone, Copy)]
 struct Work<'a> {
     arena: &'a Arena,
@@ -79,7 +80,8 @@ pub(crate) fn closed_form<'a>(
 }
 
 impl<'a> Work<'a> {
-    /// A platform point's coordinates as unknowns: no joint is solved from an equation that holds them.
+    /// Coordinates of a platform point as unknowns: no joint is solved from an equation that
+    /// contains them.
     fn unknown_point(self) -> Vector3<'a> {
         let coordinate = |axis: usize| {
             if self.free[axis] {
@@ -91,7 +93,7 @@ impl<'a> Work<'a> {
         Vector3(std::array::from_fn(coordinate))
     }
 
-    /// The spheres that the legs keep `point` on, where `arm` leads from it to the leg's end.
+    /// The spheres of `point`, which the legs impose; `arm` leads from it to the leg's end.
     fn spheres(
         self,
         legs: &[usize],
@@ -113,7 +115,8 @@ impl<'a> Work<'a> {
         legs.iter().filter_map(of_leg).collect()
     }
 
-    /// The sphere of one leg, after what follows from its actuators and the platform's orientation.
+    /// The sphere of one leg, after elimination of the joints that its actuators and the
+    /// orientation determine.
     fn sphere(self, leg: usize, task: Task<'a, 'a>) -> Option<Sphere<'a>> {
         let mut configuration = self.measured(leg);
         loop {
@@ -149,8 +152,9 @@ impl<'a> Work<'a> {
         configuration
     }
 
-    /// The equation without those unknown turns that it does not depend on: one that holds c² + s² only
-    /// has no derivative along the circle.
+    /// The equation without unknown turns on which it does not depend.
+    ///
+    /// An equation that contains only c² + s² of a turn has no derivative along the circle.
     fn without_turns(self, equation: Expr<'a>, unknowns: &[Unknown]) -> Expr<'a> {
         let turns = unknowns.iter().filter(|u| matches!(u, Unknown::Turn(_)));
         turns.fold(equation, |equation, turn| {
@@ -169,7 +173,7 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// The equation as a sphere; `None` if it is of another form.
+    /// The equation as a sphere; `None` if it has another form.
     fn as_sphere(self, leg: usize, equation: Expr<'a>) -> Option<Sphere<'a>> {
         let arena = self.arena;
         let point = self.unknown_point();
@@ -201,7 +205,7 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// A point platform or a translation: X is the platform's origin.
+    /// Solves a point platform or a translation: X is the platform's origin.
     fn one_meeting(self) -> Option<ClosedForm<'a>> {
         let motion = self.mechanism.platform.as_ref()?.motion;
         let platform = PlatformPose::new(self.arena, motion, &[]);
@@ -219,7 +223,7 @@ impl<'a> Work<'a> {
         Some(self.result(pose.collect(), &[&meeting]))
     }
 
-    /// A planar platform that two pairs of legs hold at two points.
+    /// Solves a planar platform that two pairs of legs hold at two points.
     fn two_meetings(self) -> Option<ClosedForm<'a>> {
         let normal = self.normal?;
         let mut points: Vec<([Number; 3], Vec<usize>)> = Vec::new();
@@ -253,7 +257,7 @@ impl<'a> Work<'a> {
         Some(self.mechanism.legs[leg].end.as_ref()?.point())
     }
 
-    /// Where a platform point is at home.
+    /// Position of a platform point at home.
     fn home_point(self, at: [Number; 3]) -> [f64; 3] {
         let Some(platform) = &self.mechanism.platform else {
             return [0.0; 3];
@@ -263,7 +267,7 @@ impl<'a> Work<'a> {
         [point.x, point.y, point.z]
     }
 
-    /// The meeting of as many spheres as there are coordinates that is farthest from singular at home.
+    /// The intersection of as many spheres as coordinates that is farthest from singular at home.
     fn best_meeting(self, spheres: &[Sphere<'a>], home: [f64; 3]) -> Option<Meeting<'a>> {
         let count = self.free.iter().filter(|f| **f).count();
         let mut best: Option<(f64, Meeting<'a>)> = None;
@@ -273,7 +277,7 @@ impl<'a> Work<'a> {
             let Some((quality, meeting)) = meeting.filter(|(quality, _)| *quality > REGULAR) else {
                 continue;
             };
-            // A little more is asked of a later choice, so that rounding does not decide.
+            // A later choice has to be clearly better, so that rounding does not decide.
             if best
                 .as_ref()
                 .is_none_or(|(b, _)| quality > b * (1.0 + 1e-6))
@@ -284,7 +288,7 @@ impl<'a> Work<'a> {
         best.map(|(_, meeting)| meeting)
     }
 
-    /// Where spheres meet, and the sine of the angle at which they do at home.
+    /// The intersection of spheres, and the sine of their angle at home.
     fn meeting(self, spheres: &[&Sphere<'a>], home: [f64; 3]) -> Option<(f64, Meeting<'a>)> {
         let first = *spheres.first()?;
         let arms = spheres[1..].iter().map(|s| {
@@ -296,7 +300,7 @@ impl<'a> Work<'a> {
             )
         });
         let arms: Vec<(Vector3<'a>, Expr<'a>)> = arms.collect();
-        // Y lies in the span of the arms, `normal` is normal to it.
+        // Y lies in the span of the arms; `normal` is perpendicular to it.
         let (normal, weighted, square) = match arms.as_slice() {
             [(w, s)] => {
                 let normal = Vector3::unit(self.arena, self.normal?).cross(*w);
@@ -328,7 +332,7 @@ impl<'a> Work<'a> {
         Some((quality, meeting))
     }
 
-    /// The planar pose that takes two platform points to two places.
+    /// The planar pose that maps two platform points to two positions.
     fn pose_through(
         self,
         first: &LocatedPoint<'a>,
@@ -343,7 +347,7 @@ impl<'a> Work<'a> {
         let base = plane.map(|i| p2.0[i] - p1.0[i]);
         let cosine = local[0] * base[0] + local[1] * base[1];
         let sine = local[0] * base[1] - local[1] * base[0];
-        // Encoder noise changes the measured distance of the points; the mean of both is kept.
+        // Encoder noise changes the measured distance of the points; their midpoint is kept.
         let scale = (cosine * cosine + sine * sine).sqrt().reciprocal();
         let (cosine, sine) = (cosine * scale, sine * scale);
         let middle = plane.map(|i| (p1.0[i] + p2.0[i]) * half());
@@ -370,7 +374,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Where spheres meet.
+/// Intersection of spheres.
 struct Meeting<'a> {
     point: Vector3<'a>,
     radicand: Expr<'a>,
@@ -381,11 +385,11 @@ struct Meeting<'a> {
 struct LocatedPoint<'a> {
     /// The point in the platform frame.
     at: [Number; 3],
-    /// Its position: where spheres about the legs' joints meet.
+    /// Its position: the intersection of spheres about the legs' joints.
     meeting: Meeting<'a>,
 }
 
-/// All choices of `count` of the numbers below `all`, in lexicographic order.
+/// All subsets of `count` numbers below `all`, in lexicographic order.
 fn combinations(all: usize, count: usize) -> Vec<Vec<usize>> {
     if count == 0 {
         return vec![Vec::new()];

@@ -1,9 +1,9 @@
-//! The motion that torques produce: M v̇ = Γ¹(τ) - h, solved for v̇.
+//! Forward dynamics: M v̇ = Γ¹(τ) - h, solved for v̇.
 //!
-//! M is symmetric, and positive definite for parameters of real bodies; it is factored as L D Lᵀ, as in the
-//! methods that sum composite bodies (M. W. Walker, D. E. Orin, 1982). One function has the legs' geometry,
-//! M and h together, which would be computed three times otherwise. A pivot that is not positive means that
-//! the parameters are of no real robot.
+//! M is symmetric, and positive definite for physically consistent parameters. It is factored as L
+//! D Lᵀ, as in the composite-body methods (M. W. Walker, D. E. Orin, 1982). One function computes
+//! the legs' geometry, M and h together; separate functions would repeat the geometry. A pivot that
+//! is not positive means that the parameters are not physically consistent.
 
 use crate::cas::Expr;
 use crate::derivation::context::DerivationContext;
@@ -32,7 +32,7 @@ impl<'a> DerivationContext<'a, '_> {
         factored.solve(&accelerating)
     }
 
-    /// The pivots of the mass matrix, which are positive.
+    /// Guards the pivots of the mass matrix, which have to be positive.
     fn guard_mass(&mut self, pivots: &[Expr<'a>]) {
         self.guards.extend(pivots.iter().map(|&value| Guard {
             value,

@@ -1,4 +1,4 @@
-//! Forward kinematics, in closed form and step by step, and forward dynamics.
+//! Forward kinematics, in closed form and by iteration, and forward dynamics.
 
 pub(crate) mod closed_form;
 pub(crate) mod forward_dynamics;

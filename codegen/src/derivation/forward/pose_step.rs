@@ -1,19 +1,21 @@
-//! The step of forward kinematics: from a pose x towards the one that fits the actuators.
+//! One step of forward kinematics: from a pose x towards the pose of given actuator positions.
 //!
-//! Gauss and Newton's step is Δx = J⁺ (q - q(x)) with J = J_p^inv, eq. (21). Where there are as many actuators as
-//! coordinates it is Newton's, J Δx = q - q(x), which no normal equations need:
+//! The Gauss-Newton step is Δx = J⁺ (q - q(x)) with J = J_p^inv, eq. (21). With as many actuators
+//! as coordinates it is Newton's step, J Δx = q - q(x), which needs no normal equations:
 //!
-//! - The position of an actuator between two points is a length less a constant, q = w - c, and its row of J is
-//!   divided by w. Multiplied by w on both sides, no row is divided by anything.
-//! - The system is solved by blocks of two and three columns, whose rows are the best conditioned ones at
-//!   home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and P x = a - Q y, with P⁻¹ as
-//!   adjugate over determinant: one division a block.
+//! - The position of an actuator between two points is a length minus a constant, q = w - c, and
+//!   its row of J contains the divisor w. Multiplying both sides by w removes all divisors.
+//! - The system is solved by blocks of two and three columns, with the rows that are best
+//!   conditioned at home. From [P Q; R S] (x, y) = (a, b) follow (S - R P⁻¹ Q) y = b - R P⁻¹ a and
+//!   P x = a - Q y. P⁻¹ is adjugate over determinant: one division per block.
 //!
-//! Of an angle q with the direction (c, s) that is (c', s') at the pose, q - q(x) is the angle from one direction to the
-//! other, that of (c c' + s s', s c' - c s'). Whole turns are none in it, and a common factor of c' and s' does not matter.
+//! For an angle q with the direction (c, s), and (c', s') at the pose, q - q(x) is the angle
+//! between the two directions, that of (c c' + s s', s c' - c s'). Whole turns cancel, and a common
+//! factor of c' and s' is irrelevant.
 //!
-//! The determinant d of a block may vanish where J is regular, and near there digits are lost with 1/d². So it is
-//! refused sooner than other determinants; whoever takes the steps then goes on by normal equations.
+//! The determinant d of a block may vanish although J is regular, and near there rounding errors
+//! grow with 1/d². So its guard is stricter than that of other determinants; the caller then
+//! continues with the normal equations.
 
 use crate::cas::{CosineSine, Expr};
 use crate::derivation::context::DerivationContext;
@@ -25,14 +27,16 @@ use crate::mechanism::numeric::best_conditioned;
 use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
 
-/// How much sooner the determinant of a block is refused than one that tells of a singular J: a step of the 6-UPS is then
-/// off by 10⁻⁵ of itself at most, and in single precision the home configuration is still far from the bound.
+/// Factor by which a block's determinant is guarded more strictly than one that shows a singular J.
+///
+/// A step of the 6-UPS then has a relative error of at most 10⁻⁵. In single precision the home
+/// configuration is still far from the bound.
 const SOONER: f64 = 1e3;
 
-/// Columns that are taken out together.
+/// Number of columns that are eliminated together.
 const BLOCK: usize = 2;
 
-/// The largest block: what remains at last is solved at once.
+/// Size of the largest block, which is solved at once in the end.
 const LAST: usize = 3;
 
 /// Rows of a linear system, with their right-hand sides.
@@ -42,7 +46,7 @@ struct System<'a> {
 }
 
 impl<'a> DerivationContext<'a, '_> {
-    /// The step from the pose towards the actuators.
+    /// The step from the pose towards the actuator positions.
     pub(crate) fn pose_step(&mut self) -> Vec<Expr<'a>> {
         let positions = self.actuator_positions();
         let differences = self.differences();
@@ -56,7 +60,7 @@ impl<'a> DerivationContext<'a, '_> {
         let mut determinants = Vec::new();
         match self.by_blocks(&system, &mut determinants) {
             Some(step) => {
-                // The last one vanishes where J does.
+                // The last determinant vanishes where that of J does.
                 if let Some((last, inner)) = determinants.split_last() {
                     self.guard_blocks(inner);
                     self.guard_platform(&[*last], ActuatorGroup::All);
@@ -67,7 +71,7 @@ impl<'a> DerivationContext<'a, '_> {
         }
     }
 
-    /// q - q(x), of angles the difference nearest to zero: the angle between their directions, which knows no turns.
+    /// q - q(x); for angles, the angle between their directions, without whole turns.
     pub(crate) fn differences(&mut self) -> Vec<Expr<'a>> {
         let positions = self.actuator_positions();
         let measured = self.input("actuators", positions.len());
@@ -93,7 +97,7 @@ impl<'a> DerivationContext<'a, '_> {
         actuated.map(named).collect()
     }
 
-    /// Guards determinants of blocks that may vanish where J is regular.
+    /// Guards determinants of blocks that may vanish although J is regular.
     fn guard_blocks(&mut self, determinants: &[Expr<'a>]) {
         let before = self.guards.len();
         self.guard_platform(determinants, ActuatorGroup::All);
@@ -104,7 +108,7 @@ impl<'a> DerivationContext<'a, '_> {
         }
     }
 
-    /// J Δx = Δq with each row multiplied by the length that it is divided by.
+    /// J Δx = Δq, with each row multiplied by its divisor, a length.
     fn without_divisors(&self, positions: &[Expr<'a>], differences: &[Expr<'a>]) -> System<'a> {
         let mechanism = self.robot.mechanism;
         let (mut rows, mut right) = (self.robot.inverse_jacobian(), differences.to_vec());
@@ -124,8 +128,9 @@ impl<'a> DerivationContext<'a, '_> {
         System { rows, right }
     }
 
-    /// The solution of A x = b; the determinants that are divided by are added to those given. `None` where a
-    /// block is singular at home.
+    /// The solution of A x = b; appends the determinants by which it divides to those given.
+    ///
+    /// `None` if a block is singular at home.
     fn by_blocks(
         &self,
         system: &System<'a>,
@@ -178,7 +183,7 @@ impl<'a> DerivationContext<'a, '_> {
     }
 }
 
-/// A direction without the constant by which both components are multiplied.
+/// A direction without the common constant factor of its components.
 fn unscaled<'a>(direction: CosineSine<'a>) -> CosineSine<'a> {
     let (a, cosine) = direction.cosine.factor_and_base();
     let (b, sine) = direction.sine.factor_and_base();
@@ -192,7 +197,7 @@ fn unscaled<'a>(direction: CosineSine<'a>) -> CosineSine<'a> {
     }
 }
 
-/// The solution of a system of few rows by Cramer's rule.
+/// The solution of a small system by Cramer's rule.
 fn solved<'a>(
     rows: &Rows<'a>,
     right: &[Expr<'a>],
@@ -218,7 +223,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// The columns that are taken out together, and the others.
+/// The columns that are eliminated together, and the others.
 fn halves<'a>(rows: &Rows<'a>) -> [Rows<'a>; 2] {
     let left = rows.iter().map(|row| row[..BLOCK].to_vec());
     let right = rows.iter().map(|row| row[BLOCK..].to_vec());

@@ -1,4 +1,5 @@
-//! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
+//! Inverse kinematics in closed form closes every robot of the library, in the working mode of
+//! home.
 
 use crate::cas::Arena;
 use crate::derivation::{Derived, MotionInput, Selection, Underivable, derive};
@@ -9,9 +10,9 @@ use overact_core::Function;
 use overact_description::diagnostic::Source;
 use std::path::PathBuf;
 
-/// Of positions, m and rad.
+/// Closure tolerance at displaced poses, m and rad.
 const CLOSED: f64 = 1e-11;
-/// Of the home configuration, which itself is closed to 1e-10.
+/// Tolerance at home, which itself is closed to 1e-10.
 const AT_HOME: f64 = 1e-8;
 const POSES: usize = 20;
 
@@ -37,7 +38,7 @@ fn mechanism(name: &str, text: String) -> Mechanism {
     check(&description).expect("a right mechanism")
 }
 
-/// The pose of this number near home.
+/// A pose near home, by number.
 fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     let platform = mechanism.platform.as_ref().expect("a platform");
     let mut pose = mechanism.home.pose.clone();
@@ -50,7 +51,7 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     let length = 0.05 * mechanism.length_scale();
     for (i, x) in pose.iter_mut().enumerate() {
         let reach = if i < first_angle { length } else { 0.05 };
-        // Phases that are no fraction of each other spread the poses.
+        // Phases with irrational ratios spread the poses.
         *x += reach * (1.7 * number as f64 + 2.3 * i as f64).sin();
     }
     let norm = pose[first_angle..]
@@ -62,7 +63,8 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     pose
 }
 
-/// Displaced poses that the legs allow. Those of a platform with parasitic motion are projected onto them.
+/// Displaced poses that the legs allow; those of a platform with parasitic motion are projected
+/// onto them.
 fn allowed_poses(mechanism: &Mechanism) -> Vec<Vec<f64>> {
     if mechanism.is_parasitic() {
         let states = random_states(mechanism, POSES, 1).into_iter();
@@ -109,7 +111,7 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
     }
 }
 
-/// The joints that a rule gives are those of home there, and close the legs at poses around it.
+/// The closed-form joints are those of home at home, and close the legs at poses around it.
 fn legs_close(name: &str, mechanism: &Mechanism) {
     let Some(platform) = &mechanism.platform else {
         return;
@@ -140,8 +142,8 @@ fn legs_close(name: &str, mechanism: &Mechanism) {
     }
 }
 
-/// A plane whose normal the first joint lays across the leg's base: a turn γ about z, then a right angle
-/// about x, which the base takes back.
+/// A plane whose normal the first joint tilts across the leg's base: a rotation γ about z, then a
+/// right angle about x, which the base undoes.
 #[test]
 fn the_first_joint_of_a_planar_leg_may_tilt_its_plane_and_turn_it() {
     let first = "[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n";
@@ -158,7 +160,8 @@ fn the_first_joint_of_a_planar_leg_may_tilt_its_plane_and_turn_it() {
     legs_close("tilted", &mechanism);
 }
 
-/// Whether a robot's pose has a closed form, which then gives the poses that the actuators came from.
+/// Whether a robot's pose has a closed form; if so, it returns the poses of the given actuator
+/// positions.
 fn pose_comes_back(name: &str, mechanism: &Mechanism) -> bool {
     let arena = Arena::new();
     let found = derived(
@@ -201,7 +204,8 @@ fn poses_by_rule_are_those_that_the_actuators_came_from() {
             with_closed_form.push(mechanism.name);
         }
     }
-    // The robots whose legs hold a platform point at a fixed distance from what an actuator moves.
+    // The robots whose legs keep a platform point at a fixed distance from a point that an actuator
+    // moves.
     let expected = [
         "Delta",
         "Delta4",

@@ -1,9 +1,9 @@
-//! Forces on the actuated joints, and the systems that lead from them to the platform and back.
+//! Forces on the actuated joints, and the linear systems between them and the platform.
 //!
-//! Where there are as many actuators as independent coordinates, J = J_p^inv is square: what acts on an
-//! actuated joint's own rate is that actuator's torque as it is, and only the rest F of the generalised forces
-//! goes through the platform, τ = τ_own + J⁻ᵀ F. Small square systems are solved by cofactors, without pivots
-//! that could vanish where J is regular. All others are solved by least squares, eqs. (21) and (22).
+//! With as many actuators as independent coordinates, J = J_p^inv is square. A force on an actuated
+//! joint's own rate is then the torque of its actuator, and only the remaining generalised forces F
+//! are transformed: τ = τ_own + J⁻ᵀ F. Small square systems are solved by cofactors, because pivots
+//! could vanish although J is regular. All others are solved by least squares, eqs. (21) and (22).
 
 use crate::cas::Expr;
 use crate::derivation::context::DerivationContext;
@@ -11,10 +11,11 @@ use crate::derivation::linear_algebra::elimination::{Inverse, Rows, inverse};
 use crate::derivation::linear_algebra::linear::{Factored, apply, dot, transposed};
 use overact_core::ActuatorGroup;
 
-/// The largest blocks of J that are solved by cofactors: from four rows on least squares take fewer operations.
+/// Size of the largest blocks of J that are solved by cofactors; from four rows on least squares
+/// are cheaper.
 pub(crate) const COFACTORS: usize = 3;
 
-/// J = J_p^inv, ready to be solved with.
+/// J = J_p^inv, prepared for solving.
 pub(crate) enum ActuatorSystem<'a> {
     /// J⁻¹.
     Square(Inverse<'a>),
@@ -23,7 +24,7 @@ pub(crate) enum ActuatorSystem<'a> {
 }
 
 impl<'a> ActuatorSystem<'a> {
-    /// The v that fits J v to the actuators' rates best.
+    /// The v for which J v fits the actuators' rates best.
     pub(crate) fn velocities(&self, rates: &[Expr<'a>]) -> Vec<Expr<'a>> {
         match self {
             Self::Square(inverse) => {
@@ -50,7 +51,7 @@ impl<'a> ActuatorSystem<'a> {
         }
     }
 
-    /// J⁺, r x n.
+    /// J⁺, r × n.
     pub(crate) fn pseudo_inverse(&self) -> Rows<'a> {
         match self {
             Self::Square(inverse) => inverse.rows.clone(),
@@ -63,7 +64,7 @@ impl<'a> ActuatorSystem<'a> {
 }
 
 impl<'a> DerivationContext<'a, '_> {
-    /// J = J_p^inv, ready to be solved with; what is divided by is guarded.
+    /// J = J_p^inv, prepared for solving; its divisors are guarded.
     pub(crate) fn actuator_system(&mut self) -> ActuatorSystem<'a> {
         let jacobian = self.robot.inverse_jacobian();
         if let Some(inverse) = self.by_cofactors(&jacobian) {

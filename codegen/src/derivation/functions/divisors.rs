@@ -1,17 +1,18 @@
-//! Conditions on what a function divides by.
+//! Guards of a function's divisors.
 //!
-//! Determinants of legs and pivots of the actuators' rows are guarded where they are made. Closed forms of
-//! joints and of the pose divide by more: by the square of the distance that two links span, by the
-//! coefficients of an equation that is solved for a turn. Where one of those vanishes the function has no
-//! value, and has to say so.
+//! Determinants of legs and pivots of the actuators' rows are guarded where they arise. Closed
+//! forms of joints and of the pose have more divisors: the square of the distance that two links
+//! span, and coefficients of an equation that is solved for a turn. If one of them vanishes the
+//! function has no value and returns an error.
 
 use crate::cas::{Arena, Expr};
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::mechanism::Mechanism;
 use overact_core::ActuatorGroup;
 
-/// A condition on every divisor of a function's entries, in the order in which they were built; `guards` are
-/// those that the function has anyway.
+/// A guard for every divisor of a function's entries, in order of construction.
+///
+/// `guards` are those that the function has anyway.
 pub(crate) fn conditions<'a>(
     arena: &'a Arena,
     mechanism: &Mechanism,
@@ -42,7 +43,7 @@ pub(crate) fn conditions<'a>(
     divisors.map(condition).collect()
 }
 
-/// The condition of a divisor that is a multiple of what is guarded.
+/// The guard of a divisor that is a multiple of a guarded value.
 fn of_multiple<'a>(value: Expr<'a>, guards: &[Guard<'a>]) -> Option<Guard<'a>> {
     let (factor, base) = value.factor_and_base();
     let scale = factor.value().abs();

@@ -14,7 +14,7 @@ use crate::derivation::underivable::Underivable;
 use overact_core::{ActuatorGroup, Columns, Input};
 
 impl<'a> DerivationContext<'a, '_> {
-    /// The parameters of a form's columns.
+    /// Parameters of a form's columns.
     pub(crate) fn chosen(&self, columns: Columns) -> Vec<BodyParameter> {
         match columns {
             Columns::Standard => self.selection.standard.clone(),
@@ -22,19 +22,19 @@ impl<'a> DerivationContext<'a, '_> {
         }
     }
 
-    /// Case 1: the columns of some parameters, projected on the platform, eq. (30).
+    /// Columns of some parameters in the platform projection, eq. (30).
     pub(crate) fn on_platform(&mut self, of: &[BodyParameter]) -> Rows<'a> {
         let projection = self.robot.project_on_platform();
         self.columns(&projection, of)
     }
 
-    /// Case 2: the columns of some parameters, projected on the kept actuators, eq. (36).
+    /// Columns of some parameters in the actuator projection, eq. (36).
     pub(crate) fn on_actuators(&mut self, of: &[BodyParameter]) -> Result<Rows<'a>, Underivable> {
         let projection = self.kept_projection()?;
         Ok(self.columns(&projection, of))
     }
 
-    /// The projection on the kept actuators, whose determinant is guarded.
+    /// The projection on the kept actuators, with a guarded determinant.
     fn kept_projection(&mut self) -> Result<Projection<'a>, Underivable> {
         let projection = self
             .robot
@@ -43,7 +43,7 @@ impl<'a> DerivationContext<'a, '_> {
         Ok(projection)
     }
 
-    /// The columns of some parameters: each by itself, or as a combination of others among them.
+    /// Columns of some parameters: derived, or combined from others among them.
     fn columns(&mut self, projection: &Projection<'a>, of: &[BodyParameter]) -> Rows<'a> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
         let Some(motion) = self.robot.motion(&twist, &acceleration) else {
@@ -84,7 +84,7 @@ impl<'a> DerivationContext<'a, '_> {
         transposed(&columns)
     }
 
-    /// τ* = J (JᵀJ)⁻¹ Jᵀ τ, eq. (50): what of the torques moves the robot.
+    /// τ* = J (JᵀJ)⁻¹ Jᵀ τ, eq. (50): the torques without internal torques.
     pub(crate) fn project_torques(&mut self, n: usize) -> Vec<Expr<'a>> {
         let torques = self.input("torques", n);
         if n == self.robot.mechanism.dof() {
@@ -113,8 +113,10 @@ impl<'a> DerivationContext<'a, '_> {
         Ok(column((0..kept.len()).map(entry).collect()))
     }
 
-    /// Standard or base parameters and the payload's with their values: an input, or constants where they
-    /// are known. Of base parameters all others are zero, for they are regrouped into these.
+    /// Standard or base parameters and those of the payload, with values: an input, or known
+    /// constants.
+    ///
+    /// If base parameters are given all others are zero, since they are regrouped into these.
     fn parameter_values(&mut self, of: Columns) -> Vec<(BodyParameter, Expr<'a>)> {
         let mut all = self.chosen(of);
         all.extend(&self.selection.payload);
@@ -135,7 +137,7 @@ impl<'a> DerivationContext<'a, '_> {
         values.filter(|(of, _)| self.owner.has(*of)).collect()
     }
 
-    /// Γ¹ of given parameters.
+    /// Γ¹ for given parameters.
     pub(crate) fn projected_dynamics(
         &mut self,
         of: Columns,
@@ -145,7 +147,7 @@ impl<'a> DerivationContext<'a, '_> {
         self.dynamics_of(of, twist, acceleration, &mut ActuatedJointForces::default())
     }
 
-    /// Γ¹ of given parameters, without what goes to `actuators`.
+    /// Γ¹ for given parameters, without the forces that go to `actuators`.
     pub(crate) fn dynamics_of(
         &mut self,
         of: Columns,
@@ -167,7 +169,7 @@ impl<'a> DerivationContext<'a, '_> {
             .generalised_forces(&motion, &projection, &values, actuators)
     }
 
-    /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm; J⁻ᵀ Γ¹ where J is square.
+    /// τ = J (JᵀJ)⁻¹ Γ¹, the torques of least norm; J⁻ᵀ Γ¹ if J is square.
     pub(crate) fn least_norm_torques(&mut self, of: Columns) -> Vec<Expr<'a>> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
         let mut own = ActuatedJointForces::of(&self.robot);
@@ -176,8 +178,9 @@ impl<'a> DerivationContext<'a, '_> {
         own.with(torques)
     }
 
-    /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the torques that move nothing: of the torques p = J_a^-T Γ¹
-    /// on the kept actuators alone, which move the robot, N (c - Nᵀ p) makes those.
+    /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the internal torques.
+    ///
+    /// Computed from the torques p = J_a^-T Γ¹ of the kept actuators alone as p + N (c - Nᵀ p).
     ///
     /// # Errors
     /// See [`DerivationContext::null_space`].
@@ -200,7 +203,7 @@ impl<'a> DerivationContext<'a, '_> {
         Ok(column(torques))
     }
 
-    /// A basis of the torques that move nothing, one column for each redundant actuator.
+    /// A basis of the internal torques, one column for each redundant actuator.
     ///
     /// # Errors
     /// Kept actuators that never determine the platform's motion.
@@ -222,7 +225,7 @@ impl<'a> DerivationContext<'a, '_> {
         Ok((basis, inverse.rows))
     }
 
-    /// M of given parameters, from bodies summed from the tips to the base.
+    /// M for given parameters, from bodies summed from the tips to the base.
     pub(crate) fn mass_matrix(&mut self, of: Columns) -> Rows<'a> {
         let values = self.parameter_values(of);
         self.robot.masses(&values).unwrap_or_default()

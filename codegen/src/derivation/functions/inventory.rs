@@ -1,4 +1,4 @@
-//! Which functions a robot has, what each is evaluated from, and what it is then called.
+//! The functions of a robot, their inputs, and their names.
 
 use crate::cas::Arena;
 use crate::derivation::forward::closed_form::closed_form;
@@ -39,8 +39,10 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<FunctionForm> {
         .collect()
 }
 
-/// What a function is evaluated from: those that run at every sample of a log from everything that a log
-/// may hold, matrices of the closure from joints.
+/// The motions from which a function is evaluated.
+///
+/// Functions that run at every sample of a log use all inputs that a log may contain; matrices of
+/// the closure use joints.
 #[must_use]
 pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionInput] {
     match function {
@@ -88,7 +90,7 @@ mod tests {
     use overact_core::{Condition, Function};
     use overact_description::diagnostic::Source;
 
-    /// Whether a robot of the library has the functions of a condition: all of them, or none.
+    /// Whether a robot of the library has the functions of a condition: all or none.
     fn has(description: &str, condition: Condition) -> bool {
         let source = Source::new("robot.toml", description);
         let description = overact_description::parse(&source).expect("a right description");
@@ -108,7 +110,7 @@ mod tests {
     fn functions_of_redundancy_are_those_of_redundant_robots() {
         let dualv = include_str!("../../../../robots/dualv.toml");
         assert!(has(dualv, Condition::Redundancy));
-        // As many actuators as coordinates: a closure, and nothing to distribute.
+        // As many actuators as coordinates: a closure, and no internal torques.
         let five_bar = include_str!("../../../../robots/five_bar.toml");
         assert!(has(five_bar, Condition::Platform));
         assert!(!has(five_bar, Condition::Redundancy));

@@ -1,5 +1,5 @@
-//! Kinematics of the whole robot: positions and rates of joints, and what follows from the
-//! actuators by least squares.
+//! Kinematics of the whole robot: positions and rates of joints, and least-squares solutions from
+//! the actuators.
 
 use crate::cas::Expr;
 use crate::derivation::context::DerivationContext;
@@ -9,8 +9,7 @@ use crate::derivation::names::coordinate_label;
 use crate::mechanism::{JointIndex, JointKind};
 
 impl<'a> DerivationContext<'a, '_> {
-    /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
-    /// that fit the actuators' rates best.
+    /// The twist: an input, or the least-squares fit of the actuators' velocities.
     pub(crate) fn twist(&mut self) -> Vec<Expr<'a>> {
         let tree = self.robot.mechanism.is_tree();
         if self.from == MotionInput::Actuators {
@@ -25,7 +24,8 @@ impl<'a> DerivationContext<'a, '_> {
         )
     }
 
-    /// The independent accelerations, an input or those that fit the actuators' accelerations best.
+    /// The independent accelerations: an input, or the least-squares fit of the actuators'
+    /// accelerations.
     pub(crate) fn acceleration(&mut self) -> Vec<Expr<'a>> {
         let tree = self.robot.mechanism.is_tree();
         if self.from == MotionInput::Actuators {
@@ -44,7 +44,7 @@ impl<'a> DerivationContext<'a, '_> {
         )
     }
 
-    /// Names independent velocities or accelerations that are no inputs.
+    /// Names independent velocities or accelerations that are not inputs.
     fn name_coordinates(&self, values: &[Expr<'a>], prefix: &str) {
         for (coordinate, value) in self.robot.twist.iter().zip(values) {
             let _ = value.named(&format!("{prefix}{}", coordinate_label(coordinate)));
@@ -88,17 +88,17 @@ impl<'a> DerivationContext<'a, '_> {
         actuated.iter().map(|&i| all[i]).collect()
     }
 
-    /// (J_p^inv)^+, which is J_p where there are as many actuators as coordinates.
+    /// (J_p^inv)⁺, which is J_p for as many actuators as coordinates.
     pub(crate) fn pseudo_inverse(&mut self) -> Rows<'a> {
         self.actuator_system().pseudo_inverse()
     }
 
-    /// The v that fits J_p^inv v to the actuators' rates best.
+    /// The v for which J_p^inv v fits the actuators' rates best.
     pub(crate) fn least_squares(&mut self, rates: &[Expr<'a>]) -> Vec<Expr<'a>> {
         self.actuator_system().velocities(rates)
     }
 
-    /// v̇ of least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.
+    /// v̇ by least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.
     pub(crate) fn acceleration_of(&mut self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let actuated = self.robot.mechanism.actuated();
         let measured = self.input("actuator_accelerations", actuated.len());

@@ -1,4 +1,4 @@
-//! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
+//! Matrices of the closure equations: A_p, B_p, J_k, J_tk, and the closure error.
 
 use crate::cas::Expr;
 use crate::derivation::context::{DerivationContext, column};
@@ -7,7 +7,7 @@ use crate::derivation::linear_algebra::elimination::{Rows, inverse};
 use crate::derivation::robot::constraints::placement_error;
 
 impl<'a> DerivationContext<'a, '_> {
-    /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
+    /// A_p (n × r) and B_p (n × n), eq. (11): the rows of the legs' adjugates.
     pub(crate) fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let joints = mechanism.joints();
@@ -34,7 +34,7 @@ impl<'a> DerivationContext<'a, '_> {
         (platform, actuators)
     }
 
-    /// The determinant of a leg's rows of J_k, where those that the leg is solved from are in other axes.
+    /// Determinant of a leg's rows of J_k, if the leg is solved in other axes.
     fn determinant(&self, index: usize) -> Option<Expr<'a>> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let frames = self.robot.base_frames(index)?;
@@ -46,8 +46,8 @@ impl<'a> DerivationContext<'a, '_> {
         Some(inverse(&matrix, &home)?.determinant)
     }
 
-    /// By how much the legs' ends miss the platform, in the rows of J_k: positions (m), and half the
-    /// axial vector of the rotation that is left (rad for small ones).
+    /// Closure errors of the legs in the rows of J_k: positions (m), and half the axial vector of
+    /// the remaining rotation (rad for small ones).
     pub(crate) fn closure_error(&mut self) -> Rows<'a> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let mut errors = Vec::new();
@@ -74,7 +74,7 @@ impl<'a> DerivationContext<'a, '_> {
         column(errors)
     }
 
-    /// D, of a platform with parasitic motion.
+    /// D of a platform with parasitic motion.
     pub(crate) fn platform_jacobian(&mut self) -> Rows<'a> {
         let parasitic = self.robot.parasitic_motion.as_ref();
         parasitic.map_or_else(Vec::new, |parasitic| {
@@ -82,7 +82,7 @@ impl<'a> DerivationContext<'a, '_> {
         })
     }
 
-    /// By how much a pose misses what the legs allow.
+    /// Distance of a pose from those that the legs allow.
     pub(crate) fn blocked_error(&mut self) -> Rows<'a> {
         let errors = self.robot.blocked_errors().into_iter();
         column(errors.map(|(error, _)| error).collect())
@@ -94,7 +94,7 @@ impl<'a> DerivationContext<'a, '_> {
         parasitic.map_or_else(Vec::new, |parasitic| parasitic.matrix.clone())
     }
 
-    /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.
+    /// J_k (n_t × n_t) and J_tk (n_t × r), eq. (9), in the base frame.
     pub(crate) fn leg_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let total = mechanism.joints().len();
@@ -102,7 +102,7 @@ impl<'a> DerivationContext<'a, '_> {
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let ends = state.closure.as_ref().zip(self.robot.end_of(index));
             let (Some((closure, end)), Some(frames)) = (ends, self.robot.base_frames(index)) else {
-                // The rates of joints of legs without an end are independent ones.
+                // The joint rates of legs without an end are independent coordinates.
                 let own = mechanism.leg_range(index).len();
                 for (i, row) in state.rows[..own].iter().enumerate() {
                     let mut entries = vec![arena.zero(); total];

@@ -29,9 +29,9 @@ pub struct Derived<'a> {
     pub shape: (usize, usize),
     /// The output, row-major.
     pub entries: Vec<Expr<'a>>,
-    /// Conditions for the output to have a value.
+    /// Guards of the output.
     pub guards: Vec<Guard<'a>>,
-    /// Conditions on all that the output divides by.
+    /// Guards of all divisors of the output.
     pub divisors: Vec<Guard<'a>>,
 }
 
@@ -44,7 +44,7 @@ impl Derived<'_> {
         (0..columns).filter(is_present).collect()
     }
 
-    /// Leaves out all columns but some.
+    /// Removes all columns but some.
     pub(crate) fn keep_columns(&mut self, kept: &[usize]) {
         let (rows, columns) = self.shape;
         let row = |r: usize| kept.iter().map(move |c| r * columns + c);
@@ -76,13 +76,13 @@ pub fn derive<'a>(
     with_divisors(arena, mechanism, derived)
 }
 
-/// Guards what the output divides by.
+/// Guards the divisors of the output.
 pub(crate) fn with_divisors<'a>(
     arena: &'a Arena,
     mechanism: &Mechanism,
     mut derived: Derived<'a>,
 ) -> Result<Derived<'a>, Underivable> {
-    // Conditions on the pose are computed for themselves, and may divide by more than the output does.
+    // Conditions on the pose are computed separately and may have more divisors than the output.
     let of_pose = derived.guards.iter();
     let of_pose = of_pose.filter(|guard| matches!(guard.kind, GuardKind::Closed(_)));
     let mut computed = derived.entries.clone();
@@ -98,7 +98,7 @@ pub(crate) fn with_divisors<'a>(
     }
 }
 
-/// A function of the configuration, or what `rows` make of it.
+/// Derives a function of the configuration whose output is made by `rows`.
 pub(crate) fn derive_with<'a, 's>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
@@ -107,7 +107,8 @@ pub(crate) fn derive_with<'a, 's>(
     rows: impl FnOnce(&mut DerivationContext<'a, 's>) -> Result<Rows<'a>, Underivable>,
 ) -> Result<Derived<'a>, Underivable> {
     let FunctionForm { function, from } = form;
-    // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
+    // Forward kinematics yields a closed pose; functions that project onto the closures start from
+    // other poses.
     let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
     let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
     let still = if brings_back || closes {
@@ -121,12 +122,12 @@ pub(crate) fn derive_with<'a, 's>(
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = context.robot.guards.clone();
     guards.extend(context.guards);
-    // Where Newton's method finds the joints, functions from the pose call those from the joints.
+    // If Newton's method finds the joints, functions of the pose call those of the joints.
     let is_of_pose = match selection.joints {
         JointsBy::Newton => from != MotionInput::Actuators,
         JointsBy::Rule => from == MotionInput::Pose,
     };
-    // What is at zero otherwise misses more there than anything that follows from it.
+    // Coordinates assumed zero violate this more than any quantity derived from them.
     if from != MotionInput::Actuators {
         guards.extend(context.robot.still_guards(still));
     }
@@ -145,7 +146,7 @@ pub(crate) fn derive_with<'a, 's>(
     })
 }
 
-/// Forward kinematics by rule.
+/// Forward kinematics in closed form.
 fn pose_in_closed_form<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
@@ -166,7 +167,7 @@ fn pose_in_closed_form<'a>(
 }
 
 impl<'a> DerivationContext<'a, '_> {
-    /// What each function is made of, row by row.
+    /// The output of each function, row by row.
     fn rows(&mut self, function: Function) -> Result<Rows<'a>, Underivable> {
         let n = self.robot.mechanism.actuated().len();
         Ok(match function {

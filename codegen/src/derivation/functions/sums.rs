@@ -1,11 +1,12 @@
-//! Functions of given parameters as sums over the legs, and what follows from the sums alone.
+//! Functions of given parameters as sums over the legs, and their outputs from the sums alone.
 //!
-//! The mass matrix M, the bias h and Γ¹ are sums of what each leg's bodies add and of what the platform adds,
-//! for they are linear in the parameters. So is JᵀJ with J = J_p^inv, of which each leg has the rows of its own
-//! actuators. Solving with these sums takes no leg apart; of the solution x = (JᵀJ)⁻¹ Γ¹ a leg's torques are its
-//! rows of J times x. With Jᵀ (q - q(x)) in the place of Γ¹ the solution is a step of forward kinematics. A small square J
-//! is solved by cofactors, from the rows of all legs. So one leg is enough to write the function for all that differ
-//! from it in nothing but numbers.
+//! The mass matrix M, the bias h and Γ¹ are linear in the parameters, so they are sums of the parts
+//! of each leg's bodies and of the platform. So is JᵀJ with J = J_p^inv, in which each leg has the
+//! rows of its own actuators. Solving with these sums needs no single leg. The torques of a leg are
+//! its rows of J times the solution x = (JᵀJ)⁻¹ Γ¹. With Jᵀ (q - q(x)) instead of Γ¹, the solution
+//! is a step of forward kinematics. A small square J is solved by cofactors, from the rows of all
+//! legs. So the function is written for one leg only, and used for all legs that differ from it by
+//! numbers only.
 
 use super::actuators::{ActuatorSystem, COFACTORS};
 use super::{Derived, derive_with, with_divisors};
@@ -27,20 +28,21 @@ pub(crate) const SUMS: &str = "sums";
 /// The name of the array of the legs' rows.
 pub(crate) const ROWS: &str = "rows";
 
-/// What one leg and the platform add to the sums of a function.
+/// Contributions of one leg and the platform to the sums of a function.
 #[derive(Debug)]
 pub(crate) struct Addends<'a> {
-    /// The entries: what the first leg adds to each sum, what the platform adds, and the rows.
+    /// The entries: contributions of the first leg and of the platform to each sum, and the rows.
     pub(crate) derived: Derived<'a>,
-    /// How many sums there are.
+    /// Number of sums.
     pub(crate) count: usize,
-    /// Rows of the first leg, a row for each of its actuators: of J, and the force on the actuator itself.
+    /// Number of rows of the first leg, one per actuator: of J, and the force on the actuator
+    /// itself.
     pub(crate) rows: usize,
     /// Whether the rows are solved by cofactors.
     pub(crate) by_cofactors: bool,
 }
 
-/// The parts of a function.
+/// Contributions to a function, by origin.
 #[derive(Default)]
 struct Parts<'a> {
     of_leg: Vec<Expr<'a>>,
@@ -49,7 +51,9 @@ struct Parts<'a> {
     by_cofactors: bool,
 }
 
-/// What one leg and the platform add to a function of given parameters. `None` if it is no such function.
+/// Contributions of one leg and the platform to a function of given parameters.
+///
+/// `None` if the function is not a sum.
 ///
 /// # Errors
 /// See [`Underivable`].
@@ -79,8 +83,9 @@ pub(crate) fn derive_addends<'a>(
     }))
 }
 
-/// What follows from the sums: the function's output, or what its rows are multiplied with. Magnitudes at home of
-/// what is divided by are left to the caller, who knows the sums there.
+/// Output of a function from its sums, or the factor of its rows.
+///
+/// The caller, who knows the sums at home, sets the magnitudes of the divisors there.
 pub(crate) fn derive_of_sums(arena: &Arena, function: Function, dof: usize) -> Derived<'_> {
     let sum = |index| arena.input(SUMS, index);
     let upper = dof * (dof + 1) / 2;
@@ -105,39 +110,41 @@ pub(crate) fn derive_of_sums(arena: &Arena, function: Function, dof: usize) -> D
     of_inputs(vec![(SUMS, count)], rows, &pivots, kind)
 }
 
-/// The numbers that legs of one shape contribute to the actuators' system: for each actuator of a leg a row of J and
-/// the force on the actuator itself.
+/// Layout of the numbers that legs of one shape contribute to the actuators' system.
+///
+/// Each actuator of a leg has a row of J and the force on the actuator itself.
 pub(crate) struct LegRowLayout<'l> {
     /// Degrees of freedom: the columns of J.
     pub(crate) dof: usize,
-    /// How many legs there are.
+    /// Number of legs.
     pub(crate) legs: usize,
-    /// Of each number of a leg, row by row, whether it may differ from zero.
+    /// For each number of a leg, row by row, whether it may differ from zero.
     pub(crate) is_present: &'l [bool],
 }
 
 impl LegRowLayout<'_> {
-    /// The numbers of a row.
+    /// Length of a row.
     const fn width(&self) -> usize {
         self.dof + 1
     }
 
-    /// The place of a number of a leg among those that are present, each for all legs; `None` if it is zero.
+    /// Index of a number of a leg among the present ones of all legs; `None` if it is zero.
     fn place(&self, leg: usize, number: usize) -> Option<usize> {
         let before = self.is_present[..number].iter();
         let before = before.filter(|is_present| **is_present).count();
         self.is_present[number].then_some(before * self.legs + leg)
     }
 
-    /// How many numbers are present, in all legs.
+    /// Count of the present numbers of all legs.
     fn count(&self) -> usize {
         let present = self.is_present.iter();
         present.filter(|is_present| **is_present).count() * self.legs
     }
 }
 
-/// The torques τ = τ_own + J⁻ᵀ F of a small square J, from the rows of J and τ_own of the legs. `None` if J is not
-/// solved by cofactors.
+/// Torques τ = τ_own + J⁻ᵀ F of a small square J, from the legs' rows of J and τ_own.
+///
+/// `None` if J is not solved by cofactors.
 pub(crate) fn derive_of_rows<'a>(
     arena: &'a Arena,
     layout: &LegRowLayout<'_>,
@@ -171,7 +178,7 @@ pub(crate) fn derive_of_rows<'a>(
     Some(of_inputs(inputs, column(torques.collect()), &pivots, kind))
 }
 
-/// A function whose pivots are guarded.
+/// A function with guarded pivots.
 fn of_inputs<'a>(
     inputs: Vec<(&'static str, usize)>,
     rows: Rows<'a>,
@@ -193,7 +200,7 @@ fn of_inputs<'a>(
     }
 }
 
-/// A symmetric matrix of the entries of its upper triangle, row by row.
+/// A symmetric matrix from its upper triangle, row by row.
 fn symmetric<'a>(size: usize, entry: &dyn Fn(usize) -> Expr<'a>) -> Rows<'a> {
     let at = |i: usize, j: usize| {
         let (i, j) = (i.min(j), i.max(j));
@@ -210,7 +217,7 @@ fn upper<'a>(matrix: &Rows<'a>) -> Vec<Expr<'a>> {
 }
 
 impl<'a> DerivationContext<'a, '_> {
-    /// What the first leg adds to each sum, what the platform adds, and the rows of the first leg's actuators.
+    /// Contributions of the first leg and of the platform to each sum, and the first leg's rows.
     fn addends(&mut self, function: Function) -> Option<Parts<'a>> {
         let n = self.robot.mechanism.actuated().len();
         let mut parts = Parts::default();
@@ -233,7 +240,7 @@ impl<'a> DerivationContext<'a, '_> {
         is_whole.then_some(parts)
     }
 
-    /// The rows of J that are the owner's.
+    /// The owner's rows of J.
     fn own_jacobian(&self) -> Rows<'a> {
         let Owner::Leg(leg) = self.owner else {
             return Vec::new();
@@ -246,7 +253,7 @@ impl<'a> DerivationContext<'a, '_> {
         own.map(|(row, _)| row).collect()
     }
 
-    /// What the owner adds to JᵀJ.
+    /// Contribution of the owner to JᵀJ.
     fn own_normal(&self) -> Rows<'a> {
         let rows = self.own_jacobian();
         if rows.is_empty() {
@@ -257,7 +264,7 @@ impl<'a> DerivationContext<'a, '_> {
         columns.iter().map(row).collect()
     }
 
-    /// What the owner adds to JᵀJ and to Jᵀ (q - q(x)).
+    /// Contributions of the owner to JᵀJ and to Jᵀ (q - q(x)).
     fn own_step(&mut self) -> Vec<Expr<'a>> {
         let differences = self.differences();
         let rows = self.own_jacobian();
@@ -269,13 +276,13 @@ impl<'a> DerivationContext<'a, '_> {
         [upper(&self.own_normal()), moved].concat()
     }
 
-    /// What the owner adds to h.
+    /// Contribution of the owner to h.
     fn own_bias(&mut self, of: Columns) -> Vec<Expr<'a>> {
         let (twist, still) = (self.twist(), self.zeros());
         self.projected_dynamics(of, &twist, &still)
     }
 
-    /// What the owner adds to Jᵀ τ.
+    /// Contribution of the owner to Jᵀ τ.
     fn moving(&mut self, n: usize) -> Vec<Expr<'a>> {
         let rows = self.own_jacobian();
         if rows.is_empty() {
@@ -285,7 +292,7 @@ impl<'a> DerivationContext<'a, '_> {
         apply(&transposed(&rows), &torques[..rows.len()])
     }
 
-    /// What the owner adds to M, and to Jᵀ τ - h.
+    /// Contributions of the owner to M and to Jᵀ τ - h.
     fn own_forward(&mut self, of: Columns, n: usize) -> Vec<Expr<'a>> {
         let _ = (self.twist(), self.input("torques", n));
         let mut all = upper(&self.mass_matrix(of));
@@ -295,8 +302,9 @@ impl<'a> DerivationContext<'a, '_> {
         all
     }
 
-    /// What the owner adds to JᵀJ, unless J is solved by cofactors, and to Γ¹. A leg's rows of J with the forces on the
-    /// actuators themselves go to `parts`.
+    /// Contributions of the owner to Γ¹ and, unless J is solved by cofactors, to JᵀJ.
+    ///
+    /// A leg's rows of J, with the forces on the actuators themselves, go to `parts`.
     fn own_inverse(&mut self, of: Columns, parts: &mut Parts<'a>) -> Vec<Expr<'a>> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
         let mut own = ActuatedJointForces::of(&self.robot);

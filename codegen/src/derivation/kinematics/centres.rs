@@ -1,9 +1,10 @@
-//! Revolute axes of a leg that meet in one point: the centre of a shoulder, a wrist or a universal joint.
+//! Revolute axes of a leg that meet in one point: the centre of a shoulder, wrist or universal
+//! joint.
 //!
-//! The partial velocity of a body's origin O for such an axis is o × (O - S), S being the centre, so the
-//! generalised force of a wrench (f, m) on it is o · (m + (O - S) × f): the moment about the centre,
-//! which all axes through it share. Where three axes meet, that takes fewer operations than to carry
-//! three partial velocities along the leg; where two do, it depends on the robot.
+//! For such an axis o, the partial velocity of a body's origin O is o × (O - S), with S the centre.
+//! The generalised force of a wrench (f, m) is o · (m + (O - S) × f): the moment about the centre,
+//! which all axes through it share. For three axes this takes fewer operations than three partial
+//! velocities along the leg. For two axes it depends on the robot.
 
 use super::rates::{Rates, parallel};
 use crate::cas::Number;
@@ -14,18 +15,18 @@ use crate::mechanism::{JointKind, Leg};
 pub struct Centre {
     /// The joints of these axes, at least two, antecedents first.
     pub joints: Vec<usize>,
-    /// Where the centre is on the first axis, from that joint's origin, m.
+    /// Position of the centre on the first axis, from that joint's origin, m.
     pub offset: Number,
 }
 
-/// The centres of a leg. An axis belongs to one centre at most: the one with most axes, the first of
-/// equals.
+/// The centres of a leg. Each axis belongs to one centre at most: the one with most axes, the first
+/// of equals.
 #[must_use]
 pub fn centres(leg: &Leg, rates: &Rates) -> Vec<Centre> {
     let mut candidates: Vec<Centre> = (0..leg.joints.len())
         .filter_map(|first| from_axis(leg, rates, first))
         .collect();
-    // A stable sort keeps the first of equals in front.
+    // A stable sort keeps the first of equals first.
     candidates.sort_by_key(|c| std::cmp::Reverse(c.joints.len()));
     let mut centres: Vec<Centre> = Vec::new();
     for candidate in candidates {
@@ -37,14 +38,14 @@ pub fn centres(leg: &Leg, rates: &Rates) -> Vec<Centre> {
     centres
 }
 
-/// The axes behind `first` that pass the point in which the next axis meets it.
+/// The axes after `first` that pass through the point where the next axis meets it.
 fn from_axis(leg: &Leg, rates: &Rates, first: usize) -> Option<Centre> {
     let turns_alone = |j: usize| leg.joints[j].kind == JointKind::Revolute && rates.is_alone(j);
     if !turns_alone(first) {
         return None;
     }
     let mut centre: Option<Centre> = None;
-    // Where a joint's origin is on its axis, from the centre.
+    // Position of each joint's origin on its axis, from the centre.
     let mut along: Vec<Option<Number>> = vec![None; leg.joints.len()];
     for (index, joint) in leg.joints.iter().enumerate().skip(first + 1) {
         let Some(antecedent) = joint.antecedent else {

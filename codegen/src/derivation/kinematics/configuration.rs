@@ -1,17 +1,17 @@
-//! Where sines and cosines of joint angles come from.
+//! Sines and cosines of joint angles, from joints or from the pose.
 //!
-//! From measured joints they are the sine and cosine of an input. From a platform pose no passive
-//! angle is ever computed: the closure gives its sine and cosine algebraically, and every other angle
-//! of the leg follows by the addition theorem.
+//! If joints are measured they are the sine and cosine of an input. If the platform pose is given,
+//! no passive angle is computed: the closure gives its sine and cosine algebraically, and all other
+//! angles of the leg follow by the addition theorem.
 
 use crate::cas::{Arena, CosineSine, Direction, Expr, Ratio, SymbolId};
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{Home, Mechanism};
 use std::cell::RefCell;
 
-/// The input array of all joints.
+/// Input array of all joints.
 const JOINTS: &str = "joints";
-/// The input array of the platform's coordinates, or of the joints of a skeleton.
+/// Input array of the platform's coordinates, or of the joints of a skeleton.
 const POSE: &str = "pose";
 
 /// The configuration of a robot as expressions.
@@ -19,17 +19,17 @@ const POSE: &str = "pose";
 pub struct Configuration<'a> {
     arena: &'a Arena,
     from: MotionInput,
-    /// What was asked for without being known, if that has symbols instead of no value.
+    /// Unknown quantities that were requested; `None` if these have no symbols.
     unknowns: Option<RefCell<Vec<Unknown>>>,
-    /// Angles whose sine and cosine are known from the closure.
+    /// Angles whose sine and cosine the closure gives.
     known: Vec<(Direction, CosineSine<'a>)>,
-    /// Positions of prismatic joints known from the closure, by joint index in q_t.
+    /// Positions of prismatic joints that the closure gives, by joint index in q_t.
     positions: Vec<(usize, Expr<'a>)>,
-    /// For every joint of q_t: its leg's name and its own name.
+    /// Names of the leg and the joint, for every joint of q_t.
     names: Vec<(String, String)>,
-    /// The joints of q_t that are the pose, in its order: those of a skeleton and of branches.
+    /// The joints of q_t in the pose, in its order: those of a skeleton and of branches.
     in_pose: Vec<usize>,
-    /// For every root that was taken: the first joint of its leg, and whether it is positive at home.
+    /// For every square root taken: the first joint of its leg, and whether it is positive at home.
     roots: Vec<(usize, bool)>,
 }
 
@@ -57,8 +57,9 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// The next root in the closed form of a leg, with the sign that it has at home. What is negative in the leg's
-    /// working mode may be positive in that of another leg that it stands for.
+    /// The next square root in the closed form of a leg, with its sign at home.
+    ///
+    /// If the leg's code is shared with legs of other working modes, the sign is an input.
     pub(crate) fn root(
         &mut self,
         first_joint: usize,
@@ -79,7 +80,7 @@ impl<'a> Configuration<'a> {
         if is_positive { root } else { -root }
     }
 
-    /// For every root that was taken, whether it is positive at home.
+    /// Whether each square root taken is positive at home.
     pub(crate) fn signs(&self) -> Vec<bool> {
         self.roots
             .iter()
@@ -87,18 +88,18 @@ impl<'a> Configuration<'a> {
             .collect()
     }
 
-    /// The arena of its expressions.
+    /// The arena of the expressions.
     pub(crate) const fn arena(&self) -> &'a Arena {
         self.arena
     }
 
-    /// What the configuration is given by.
+    /// The input that determines the configuration.
     #[must_use]
     pub const fn from(&self) -> MotionInput {
         self.from
     }
 
-    /// The same configuration with symbols for what is not known, see [`Unknown`].
+    /// The same configuration with symbols for unknown quantities, see [`Unknown`].
     #[must_use]
     pub(crate) fn with_unknowns(&self) -> Self {
         Self {
@@ -107,14 +108,14 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// What was asked for without being known.
+    /// Unknown quantities that were requested.
     #[must_use]
     pub fn unknowns(&self) -> Vec<Unknown> {
         let list = self.unknowns.as_ref();
         list.map_or_else(Vec::new, |list| list.borrow().clone())
     }
 
-    /// Notes an unknown, where there may be any.
+    /// Records an unknown, if unknowns are allowed.
     fn ask(&self, unknown: Unknown) -> Option<Unknown> {
         let mut list = self.unknowns.as_ref()?.borrow_mut();
         if !list.contains(&unknown) {
@@ -123,7 +124,7 @@ impl<'a> Configuration<'a> {
         Some(unknown)
     }
 
-    /// The input array that a joint's position is in, and where in it.
+    /// Input array and index of a joint's position.
     fn place(&self, index: usize) -> (&'static str, usize) {
         match self.in_pose.iter().position(|&own| own == index) {
             Some(at) => (POSE, at),
@@ -138,7 +139,7 @@ impl<'a> Configuration<'a> {
         self.arena.input_angle(array, at)
     }
 
-    /// The position of a joint that is one of the pose's numbers; none of a platform's pose is.
+    /// Position of a joint that is in the pose; `None` for a platform's pose, which has no joints.
     #[must_use]
     pub(crate) fn in_pose(&self, index: usize) -> Option<Expr<'a>> {
         match self.place(index) {
@@ -147,7 +148,7 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// The position of a prismatic joint, m; `None` if it is not known from the pose.
+    /// Position of a prismatic joint, m; `None` if the pose does not determine it.
     #[must_use]
     pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         if let Some(position) = self.in_pose(index) {
@@ -163,13 +164,13 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// Declares the sine and cosine of an angle.
+    /// Sets the sine and cosine of an angle.
     pub(crate) fn learn(&mut self, angle: Direction, unit: CosineSine<'a>) {
         self.name(&angle, unit);
         self.known.push((angle, unit));
     }
 
-    /// Declares the position of a prismatic joint.
+    /// Sets the position of a prismatic joint.
     pub(crate) fn learn_position(&mut self, index: usize, position: Expr<'a>) {
         if let Some((leg, joint)) = self.names.get(index) {
             let _ = position.named(&format!("q{joint}_{leg}"));
@@ -177,7 +178,7 @@ impl<'a> Configuration<'a> {
         self.positions.push((index, position));
     }
 
-    /// Cosine and sine of an angle; `None` if they do not follow from what is known.
+    /// Cosine and sine of an angle; `None` if they do not follow from known quantities.
     #[must_use]
     pub fn unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let unit = match self.from {
@@ -192,7 +193,7 @@ impl<'a> Configuration<'a> {
         Some(unit)
     }
 
-    /// Cosine and sine of an angle whose variable part is not known.
+    /// Cosine and sine of an angle with an unknown variable part.
     fn unknown_unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let is_negative = angle.terms()[0].1.value() < 0.0;
         let turn = if is_negative {
@@ -208,20 +209,20 @@ impl<'a> Configuration<'a> {
         Some(if is_negative { unit.negated() } else { unit })
     }
 
-    /// The joint of q_t that a symbol is the position of.
+    /// The joint of q_t whose position a symbol is.
     pub(crate) fn joint(&self, symbol: SymbolId) -> Option<usize> {
         let element = self.arena.input_element(symbol)?;
         (element.array == JOINTS).then_some(element.index)
     }
 
-    /// The joint of a skeleton, or of a branch, that a symbol is the position of.
+    /// The joint of a skeleton or branch whose position a symbol is.
     fn pose_joint(&self, symbol: SymbolId) -> Option<usize> {
         let element = self.arena.input_element(symbol)?;
         let own = self.in_pose.get(element.index).copied();
         own.filter(|_| element.array == POSE)
     }
 
-    /// Whether the angle holds no joint.
+    /// Whether the angle contains no joint.
     fn is_input(&self, angle: &Direction) -> bool {
         angle
             .terms()
@@ -229,7 +230,7 @@ impl<'a> Configuration<'a> {
             .all(|(symbol, _)| self.joint(*symbol).is_none())
     }
 
-    /// The angle as a known one plus or minus another, plus one that holds no joint.
+    /// The angle as a known one plus or minus another, plus one without joints.
     fn composed(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let rest = |known: &Direction, sign: i64| {
             let part = known.times(Ratio::integer(sign))?;
@@ -295,7 +296,8 @@ impl<'a> Configuration<'a> {
         } else {
             "_"
         };
-        // Names are those of the joints' own angles: offsets of right angles are removed, others are marked.
+        // Names refer to the joints' own angles: offsets by right angles are removed, others are
+        // marked.
         let (co, so) = angle.offset().cosine_and_sine();
         let is_right = co.is_zero() || so.is_zero();
         let CosineSine {
@@ -312,18 +314,19 @@ impl<'a> Configuration<'a> {
     }
 }
 
-/// A quantity of a leg that is not known yet. It has a symbol of its own in an equation, or two: the
-/// cosine and the sine of a direction are as independent as the equation's terms need.
+/// An unknown quantity of a leg, with its own symbol in an equation.
+///
+/// A direction has two symbols: the equation's terms treat its cosine and sine as independent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Unknown {
-    /// A sum of joint angles without a constant, its first factor positive.
+    /// A sum of joint angles without constant; its first factor is positive.
     Turn(Direction),
     /// The position of the prismatic joint of this index in q_t.
     Slide(usize),
 }
 
 impl Unknown {
-    /// The symbols of an unknown turn's cosine and sine.
+    /// Symbols of the cosine and sine of an unknown turn.
     #[must_use]
     pub fn unit<'a>(&self, arena: &'a Arena) -> CosineSine<'a> {
         let symbol = |of: &str| arena.placeholder(&format!("{of} of unknown {self:?}"));
@@ -333,7 +336,7 @@ impl Unknown {
         }
     }
 
-    /// The symbol of an unknown slide.
+    /// Symbol of an unknown slide.
     #[must_use]
     pub fn slide<'a>(&self, arena: &'a Arena) -> Expr<'a> {
         arena.placeholder(&format!("unknown {self:?}"))

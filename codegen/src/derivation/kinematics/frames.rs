@@ -1,4 +1,4 @@
-//! The frames of a leg's joints in one set of axes, and the columns of the leg's Jacobian J_k, eq. (9): the
+//! Frames of a leg's joints in common axes, and the columns of the leg's Jacobian J_k, eq. (9): the
 //! velocity of the leg's end per joint rate.
 
 use super::configuration::Configuration;
@@ -8,14 +8,14 @@ use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Direction, Matrix3, Number, Vector3};
 use crate::mechanism::{JointKind, Leg};
 
-/// Position and orientation of a joint's frame, written in the axes that were chosen for its leg.
+/// Position and orientation of a joint's frame, in the axes chosen for its leg.
 #[derive(Debug, Clone)]
 pub struct Frame<'a> {
     /// The frame's orientation.
     pub rotation: Matrix3<'a>,
-    /// From the antecedent frame's origin to this one's.
+    /// Vector from the antecedent frame's origin to this one's.
     pub link: Vector3<'a>,
-    /// Origin relative to the leg's base frame origin.
+    /// Origin relative to that of the leg's base frame.
     pub origin: Vector3<'a>,
 }
 
@@ -29,23 +29,25 @@ impl<'a> Frame<'a> {
 
 /// The frames of a leg.
 ///
-/// All vectors are written in one set of axes: those of the base, or of a frame on the way along the
-/// leg. In the axes of a joint near the middle most components of the leg's Jacobian are zero, and what
-/// is left is triangular, at the price of turning the end's motion into them.
+/// All vectors are in common axes: those of the base, or of a frame on the path along the leg. In
+/// the axes of a joint near the middle, most components of the leg's Jacobian are zero and the rest
+/// is triangular. In return the end's motion has to be rotated into these axes.
 #[derive(Debug, Clone)]
 pub struct LegFrames<'a> {
-    /// One per joint.
+    /// One frame per joint.
     pub frames: Vec<Frame<'a>>,
-    /// The orientation of the axes in the robot's base frame, or in those that the closure is seen in.
+    /// Orientation of the axes in the robot's base frame, or in the observer's frame.
     pub axes: Matrix3<'a>,
-    /// The axes in the robot's base frame.
+    /// Orientation of the axes in the robot's base frame.
     pub(crate) orientation: Orientation,
 }
 
 impl<'a> LegFrames<'a> {
-    /// Frames of all joints in the axes of one frame on the path ([`Orientation::intermediate_frames`]); 0 is the
-    /// base, or the observer's frame if there is one. `None` if there is no such frame, or a sine or cosine does not
-    /// follow from the configuration.
+    /// Frames of all joints in the axes of one frame on the path
+    /// ([`Orientation::intermediate_frames`]).
+    ///
+    /// Frame 0 is the base, or the observer's frame if there is one. `None` if there is no such
+    /// frame, or the configuration does not determine a sine or cosine.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
@@ -68,8 +70,8 @@ impl<'a> LegFrames<'a> {
         let base = in_axes(&Orientation::fixed(leg.base.rotation))?;
         let mut frames: Vec<Frame<'a>> = Vec::new();
         for (index, joint) in leg.joints.iter().enumerate() {
-            // The joint's own sine and cosine come first: what turns out to be equal to them, a
-            // determinant for instance, is then written as them.
+            // The joint's own sine and cosine come first: equal values, for instance a determinant,
+            // are then represented by them.
             let theta = joint_turn(leg, index, first_joint, configuration)?;
             let _ = configuration.unit(&theta.plus(&Direction::constant(joint.gamma))?)?;
             let (from_rotation, from_origin) = match joint.antecedent {
@@ -94,8 +96,10 @@ impl<'a> LegFrames<'a> {
         })
     }
 
-    /// Expresses the orientations of a leg's frames in the observer's axes, so that directions of links over a divisor
-    /// are recognised later. `None` if one does not follow from the configuration.
+    /// Expresses the orientations of a leg's frames in the observer's axes.
+    ///
+    /// Directions of links over a divisor are then recognised later. `None` if the configuration
+    /// does not determine one.
     pub(crate) fn express_in_observer_frame(
         arena: &'a Arena,
         leg: &Leg,
@@ -110,7 +114,7 @@ impl<'a> LegFrames<'a> {
         Some(())
     }
 
-    /// The vector from the origin of joint `index` to that of the last joint, along the links.
+    /// Vector from the origin of joint `index` to that of the last joint, along the links.
     #[must_use]
     pub(crate) fn to_end(&self, arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {
         let mut sum = Vector3::zero(arena);
@@ -151,7 +155,7 @@ pub(crate) fn joint_columns<'a>(
     columns
 }
 
-/// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of the independent joints, dependent ones added to those they follow.
+/// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of the independent joints; coupled joints are added to those they depend on.
 pub(crate) fn independent_columns<'a>(
     arena: &'a Arena,
     leg: &Leg,

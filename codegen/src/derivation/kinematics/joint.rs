@@ -1,5 +1,5 @@
-//! A joint in a configuration: its turn, its slide, and the step from its antecedent's frame to its own, in
-//! the notation of Khalil and Kleinfinger.
+//! A joint in a configuration, in the notation of Khalil and Kleinfinger: its turn, its slide, and
+//! the step from its antecedent's frame to its own.
 
 use super::configuration::Configuration;
 use crate::cas::{Arena, Direction, Expr, Number, Vector3};
@@ -23,7 +23,7 @@ pub(crate) fn joint_turn(
     Some(turn)
 }
 
-/// The value of a joint's position, for prismatic joints.
+/// Position of a prismatic joint.
 pub(crate) fn joint_slide<'a>(
     arena: &'a Arena,
     leg: &Leg,
@@ -42,8 +42,9 @@ pub(crate) fn joint_slide<'a>(
     Some(slide)
 }
 
-/// From the antecedent frame's origin to the joint frame's origin, in the antecedent frame:
-/// Rot(z, γ) (d, 0, b) + r z_j.
+/// Vector from the antecedent frame's origin to the joint's, in the antecedent frame.
+///
+/// It is Rot(z, γ) (d, 0, b) + r z_j.
 pub(crate) fn link_vector<'a>(
     arena: &'a Arena,
     leg: &Leg,

@@ -1,5 +1,5 @@
-//! Kinematics of legs and platform: configuration, rotations and frames, rates, the pose of the platform, and the joints
-//! of a leg from the pose.
+//! Kinematics of legs and platform: configuration, rotations and frames, rates, pose, inverse
+//! kinematics.
 
 pub(crate) mod centres;
 pub(crate) mod configuration;

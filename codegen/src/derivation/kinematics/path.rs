@@ -1,10 +1,12 @@
-//! The way between the two bodies that a chain joins, and the motion of the one as it is seen from the other.
+//! The path between the two bodies that a chain connects, and the relative motion of one as
+//! observed from the other.
 //!
-//! The observer stands on the body that the chain starts from. All vectors are written in that body's axes, or in
-//! others of the way, in which they have fewer components. The way goes up to the body that both follow and down to the one that the chain ends on, through the skeleton
-//! and through chains before, whose rates follow from the skeleton's. Against its direction a joint takes its
-//! rate away: with z its axis and q̇ its rate, from the body behind it ω' = ω - z q̇, and the joint's origin
-//! belongs to both bodies but for its slide.
+//! The observer is on the body that the chain starts from. All vectors are in that body's axes, or
+//! in those of another frame on the path, in which they have fewer components. The path leads up to
+//! the common ancestor of both bodies and down to the end body. It passes the skeleton and earlier
+//! chains, whose rates follow from the skeleton's. Against its direction a joint's rate is
+//! subtracted: with z its axis and q̇ its rate, ω' = ω - z q̇ from the body after the joint. Both
+//! bodies share the joint's origin, except for its slide.
 
 use super::configuration::Configuration;
 use super::joint::link_vector;
@@ -16,48 +18,48 @@ use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
 
-/// What is known of the skeleton and the chains before, which ways go through.
+/// Known state of the skeleton and of earlier chains, which paths pass.
 #[derive(Debug)]
 pub(crate) struct Known<'r, 'a> {
     pub(crate) arena: &'a Arena,
     pub(crate) mechanism: &'r Mechanism,
     pub(crate) configuration: &'r Configuration<'a>,
-    /// Of each leg the index of its first joint in q_t, its rates, and ∂u/∂v.
+    /// For each leg the index of its first joint in q_t, its rates, and ∂u/∂v.
     pub(crate) legs: Vec<(usize, &'r Rates, &'r Rows<'a>)>,
 }
 
-/// A joint on the way.
+/// A joint on the path.
 #[derive(Debug, Clone)]
 struct Step<'a> {
     kind: JointKind,
-    /// Its rate in the quasi-velocities of its leg.
+    /// Joint rate in the quasi-velocities of its leg.
     rate: Form,
-    /// The number of quasi-velocities of the legs before.
+    /// Number of quasi-velocities of the legs before.
     first: usize,
-    /// Its rate per rate of each independent coordinate.
+    /// Joint rate per rate of each independent coordinate.
     row: Vec<Expr<'a>>,
-    /// Whether the way goes from the joint's antecedent to the joint.
+    /// Whether the path leads from the joint's antecedent to the joint.
     is_forward: bool,
     /// The joint's axis.
     axis: Vector3<'a>,
-    /// From the antecedent's origin to the joint's.
+    /// Vector from the antecedent's origin to the joint's.
     link: Vector3<'a>,
 }
 
-/// The way from one body to another.
+/// The path from one body to another.
 #[derive(Debug, Clone)]
 pub struct Path<'a> {
     arena: &'a Arena,
     steps: Vec<Step<'a>>,
-    /// Origin of the last body's frame, in the first one's.
+    /// Origin of the last body's frame, in the first body's.
     pub(crate) origin: Vector3<'a>,
-    /// Its orientation.
+    /// Orientation of the last body's frame.
     pub(crate) rotation: Matrix3<'a>,
     /// ∂(velocity of the origin)/∂v and ∂(angular velocity)/∂v.
     pub(crate) columns: Vec<SpatialMotion<'a>>,
 }
 
-/// A relative motion: velocity and acceleration of the origin, angular velocity and acceleration.
+/// Relative motion: velocity and acceleration of the origin, angular velocity and acceleration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Relative<'a> {
     pub(crate) velocity: Vector3<'a>,
@@ -67,8 +69,9 @@ pub(crate) struct Relative<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// The way between two bodies of the skeleton and of the chains that are derived; `None` is the ground.
-    /// `None` if a sine or cosine does not follow from the configuration.
+    /// The path between two bodies of the skeleton and of derived chains; `None` is the ground.
+    ///
+    /// Returns `None` if the configuration does not determine a sine or cosine.
     #[must_use]
     pub(crate) fn new(
         known: &Known<'_, 'a>,
@@ -98,7 +101,7 @@ impl<'a> Path<'a> {
         Some(path)
     }
 
-    /// The velocities for a unit rate of the independent joint `index`.
+    /// Velocities for a unit rate of the independent joint `index`.
     fn column(&self, index: usize) -> SpatialMotion<'a> {
         let mut sum = SpatialMotion::zero(self.arena);
         for (at, step) in self.steps.iter().enumerate() {
@@ -120,7 +123,7 @@ impl<'a> Path<'a> {
         sum
     }
 
-    /// From the origin of the joint at a step to the origin of the last body.
+    /// Vector from the origin of a step's joint to the origin of the last body.
     fn lever(&self, at: usize) -> Vector3<'a> {
         let own = if self.steps[at].is_forward {
             Vector3::zero(self.arena)
@@ -136,13 +139,13 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// Whether the last body turns about more than one axis.
+    /// Whether the last body rotates about more than one axis.
     pub(crate) fn turns_freely(&self) -> bool {
         let turning = |step: &&Step<'_>| step.kind == JointKind::Revolute;
         self.steps.iter().filter(turning).count() > 1
     }
 
-    /// The motion of the last body for the quasi-velocities of all legs before and their derivatives.
+    /// Motion of the last body for the quasi-velocities of all legs before and their derivatives.
     pub(crate) fn motion(&self, rates: &[Expr<'a>], accelerations: &[Expr<'a>]) -> Relative<'a> {
         let zero = Vector3::zero(self.arena);
         let mut at = Relative {
@@ -225,8 +228,10 @@ pub(crate) fn orientation(
     orientation(mechanism, configuration, leg.base_body)?.followed_by(&all[body.joint])
 }
 
-/// The axes in which a chain's closure may see the body at its end: those of the frames on the path to it. The first
-/// are those of the body at its start.
+/// The axes in which a chain's closure may express its end body: those of the frames on the path to
+/// it.
+///
+/// The first are those of the body at the chain's start.
 pub(crate) fn observer_frames(
     mechanism: &Mechanism,
     configuration: &Configuration<'_>,
@@ -254,8 +259,10 @@ pub(crate) fn observer_frames(
     Some(all)
 }
 
-/// The numbers of the [`observer_frames`] to choose from. The first alone for legs of a platform, and for chains whose
-/// closure uses only some components of a velocity that other axes would mix with the rest.
+/// Indices of the [`observer_frames`] to choose from.
+///
+/// It is the first alone for legs of a platform. The same holds for chains whose closure uses only
+/// some components of a velocity, if other axes would mix them with the rest.
 #[must_use]
 pub(crate) fn observer_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     if mechanism.skeleton().is_none() {
@@ -283,7 +290,7 @@ impl<'a> Relative<'a> {
         }
     }
 
-    /// The motion of the body behind a joint, from that of the body before it at the same point.
+    /// Motion of the body after a joint, from that of the body before it at the same point.
     fn joined(self, kind: JointKind, rate: Vector3<'a>, rate_dot: Vector3<'a>) -> Self {
         let swept = self.omega.cross(rate);
         match kind {
@@ -301,7 +308,7 @@ impl<'a> Relative<'a> {
         }
     }
 
-    /// The motion of the body before a joint, from that of the body behind it at the same point.
+    /// Motion of the body before a joint, from that of the body after it at the same point.
     fn left(self, kind: JointKind, rate: Vector3<'a>, rate_dot: Vector3<'a>) -> Self {
         let swept = self.omega.cross(rate);
         match kind {
@@ -320,7 +327,7 @@ impl<'a> Relative<'a> {
     }
 }
 
-/// The body before a joint: that of its antecedent, or the one that its leg stands on; `None` is the ground.
+/// The body before a joint: its antecedent, or the base body of its leg; `None` is the ground.
 fn antecedent(mechanism: &Mechanism, at: BodyIndex) -> Option<BodyIndex> {
     let leg = &mechanism.legs[at.leg];
     match leg.joints[at.joint].antecedent {

@@ -1,5 +1,7 @@
-//! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14). For a chain of
-//! a skeleton it is the body that the chain ends on, seen from the one that it starts from.
+//! The platform's pose, twist t = D v and acceleration as vectors in the base frame, eq. (14).
+//!
+//! For a chain of a skeleton, the platform is the chain's end body, relative to the body at its
+//! start.
 
 use super::orientation::constant_rotation;
 use super::path::Path;
@@ -18,18 +20,18 @@ pub struct PlatformPose<'a> {
     pub rotation: Matrix3<'a>,
 }
 
-/// In which directions the independent coordinates move the platform: the columns of D.
+/// Directions in which the independent coordinates move the platform: the columns of D.
 #[derive(Debug, Clone)]
 pub(crate) enum Directions<'a> {
     /// Along and about axes of the base frame.
     Axes(Motion),
-    /// With the joints on the way to a body.
+    /// By the joints on the path to a body.
     Joints(Box<Path<'a>>),
 }
 
 impl<'a> Directions<'a> {
-    /// The components of a force that acts at `arm` from the platform's origin, with a moment, on the
-    /// independent coordinates.
+    /// Components on the independent coordinates of a force at `arm` from the platform's origin and
+    /// a moment.
     pub(crate) fn components(&self, arm: Vector3<'a>, wrench: Wrench<'a>) -> Vec<Expr<'a>> {
         match self {
             Self::Axes(motion) => on_twist(&motion.twist(), arm, wrench),
@@ -44,7 +46,7 @@ impl<'a> Directions<'a> {
         }
     }
 
-    /// Velocity of the point at `arm` and angular velocity per independent rate.
+    /// Velocity of the point at `arm` and angular velocity, per independent rate.
     pub(crate) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<SpatialMotion<'a>> {
         let (unit, zero) = (
             |axis: usize| Vector3::unit(arena, axis),
@@ -86,13 +88,13 @@ pub struct PlatformMotion<'a> {
     pub acceleration: Vector3<'a>,
     /// Angular acceleration, rad/s².
     pub angular_acceleration: Vector3<'a>,
-    /// `([ω̇]× + [ω]×[ω]×) R`, where the platform turns about more than one axis: its columns are also
-    /// the forces that the first moments produce.
+    /// `([ω̇]× + [ω]×[ω]×) R` if the platform rotates about more than one axis.
+    ///
+    /// Its columns are also the forces of the first moments.
     pub centripetal: Option<Matrix3<'a>>,
 }
 
-/// The components of a force that acts at `arm` from the platform's origin, with a moment, on the twist
-/// coordinates.
+/// Components on the twist coordinates of a force at `arm` from the platform's origin and a moment.
 pub(crate) fn on_twist<'a>(
     twist: &[TwistCoordinate],
     arm: Vector3<'a>,
@@ -108,7 +110,7 @@ pub(crate) fn on_twist<'a>(
 }
 
 impl<'a> PlatformPose<'a> {
-    /// The pose as inputs `pose[i]`, but for those that are known to be zero.
+    /// The pose as inputs `pose[i]`, except for coordinates that are known to be zero.
     #[must_use]
     pub fn new(arena: &'a Arena, motion: Motion, still: &[usize]) -> Self {
         let zero = arena.zero();
@@ -142,7 +144,7 @@ impl<'a> PlatformPose<'a> {
         }
     }
 
-    /// The body that a path leads to.
+    /// The body at the end of a path.
     #[must_use]
     pub(crate) fn on_body(arena: &'a Arena, path: Path<'a>) -> Self {
         Self {
@@ -153,18 +155,18 @@ impl<'a> PlatformPose<'a> {
         }
     }
 
-    /// In which directions the independent coordinates move it.
+    /// Directions in which the independent coordinates move the platform.
     pub(crate) const fn directions(&self) -> &Directions<'a> {
         &self.directions
     }
 
-    /// The vector from the platform's origin to a platform point, in the base frame.
+    /// Vector from the platform's origin to a platform point, in the base frame.
     #[must_use]
     pub fn arm(&self, at: [Number; 3]) -> Vector3<'a> {
         self.rotation * Vector3::constant(self.arena, at)
     }
 
-    /// A row of the six-vector (Ṗ, ω) of a platform point per independent coordinate.
+    /// A row of the six-vector (Ṗ, ω) of a platform point, per independent coordinate.
     #[must_use]
     pub(crate) fn row(&self, at: [Number; 3], row: usize) -> Vec<Expr<'a>> {
         let columns = self.directions.columns(self.arena, self.arm(at));
@@ -177,8 +179,9 @@ impl<'a> PlatformPose<'a> {
         self.rotation * constant_rotation(self.arena, placement.rotation)
     }
 
-    /// Velocities and accelerations from the twist coordinates v and their derivatives; of a body that
-    /// joints lead to, from the quasi-velocities of all legs before, one leg after the other.
+    /// Velocities and accelerations from the twist coordinates v and their derivatives.
+    ///
+    /// For the end body of a path, from the quasi-velocities of all legs before, leg by leg.
     #[must_use]
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> PlatformMotion<'a> {
         let own = match &self.directions {
@@ -210,7 +213,7 @@ impl<'a> PlatformPose<'a> {
         }
     }
 
-    /// The motion that the joints on the way give.
+    /// Motion of the end body of a path.
     fn motion_along(
         &self,
         path: &Path<'a>,
@@ -249,7 +252,7 @@ impl<'a> PlatformMotion<'a> {
     }
 }
 
-/// `[ω̇]× + [ω]×[ω]×`, with the products ω_i ω_j shared.
+/// `[ω̇]× + [ω]×[ω]×`, with shared products ω_i ω_j.
 #[must_use]
 pub fn centripetal<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
     let ([x, y, z], [ax, ay, az]) = (omega.0, alpha.0);

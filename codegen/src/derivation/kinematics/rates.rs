@@ -1,11 +1,12 @@
 //! Quasi-velocities of a leg: absolute rates along runs of parallel axes.
 //!
-//! Where consecutive revolute axes are parallel, the sum of their rates turns the bodies; it, and not
-//! the joint rate, is what closure and dynamics are simplest in. So joint j of a leg has the
-//! quasi-velocity u_j = q̇_j + s u_i, where i is the preceding revolute joint of its parallel run and
-//! s = ±1 tells whether the axes point the same way; a prismatic joint has u_j = q̇_j. Every joint
-//! rate, dependent ones included, is a linear form with constant coefficients of the u. Where a joint follows
-//! one that stands behind it, as an ankle the toe, every u is a joint rate: a sum along the run would hold itself.
+//! If consecutive revolute axes are parallel, the bodies rotate with the sum of the joint rates, in
+//! which closure and dynamics are simplest. So joint j of a leg has the quasi-velocity u_j = q̇_j +
+//! s u_i. Here i is the preceding revolute joint of its run of parallel axes, and s = ±1 the
+//! relative direction of the axes. A prismatic joint has u_j = q̇_j. Every joint rate, also of
+//! coupled joints, is a linear form of the u with constant coefficients. If a joint is coupled to a
+//! later one, as an ankle to the toe, every u is a joint rate: a sum along the run would contain
+//! itself.
 
 use crate::cas::{Angle, Arena, Expr, Number, Ratio};
 use crate::mechanism::{Joint, JointKind, Leg};
@@ -40,7 +41,7 @@ impl Form {
             .map_or(Number::ZERO, |(_, c)| *c)
     }
 
-    /// The form's value for given u.
+    /// Value of the form for given u.
     #[must_use]
     pub fn value<'a>(&self, arena: &'a Arena, u: &[Expr<'a>]) -> Expr<'a> {
         self.0
@@ -48,7 +49,7 @@ impl Form {
             .fold(arena.zero(), |sum, (i, c)| sum + u[*i] * *c)
     }
 
-    /// The form of rows: Σ coefficient × row_i.
+    /// The form applied to rows: Σ coefficient × row_i.
     #[must_use]
     pub fn row<'a>(&self, arena: &'a Arena, rows: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
         let width = rows.first().map_or(0, Vec::len);
@@ -62,21 +63,22 @@ impl Form {
     }
 }
 
-/// The rates of a leg's joints as forms of its quasi-velocities.
+/// Joint rates of a leg as forms of its quasi-velocities.
 #[derive(Debug, Clone)]
 pub struct Rates {
     /// q̇ of every joint of the leg (fixed joints: empty).
     pub joint: Vec<Form>,
-    /// By how much each joint's body turns about its z axis, as far as the run of parallel axes that it
-    /// stands in turns it.
+    /// Angular rate of each joint's body about its z axis, as far as its run of parallel axes
+    /// causes it.
     pub turning: Vec<Form>,
-    /// Of each joint that goes on with such a run, the sign of its axis along the antecedent's.
+    /// For each joint that continues such a run, the sign of its axis relative to the antecedent's.
     pub run: Vec<Option<Ratio>>,
 }
 
 impl Rates {
-    /// Whether a joint has a rate of its own that turns or moves what is behind it and nothing else
-    /// contributes to: no parallel run, no dependent joint.
+    /// Whether a joint's rate is a quasi-velocity that alone moves the bodies after it.
+    ///
+    /// It is not within a parallel run or with coupled joints.
     #[must_use]
     pub(crate) fn is_alone(&self, joint: usize) -> bool {
         let Some(&own) = self.own(&[joint]).first() else {
@@ -88,7 +90,7 @@ impl Rates {
             .all(|(_, form)| form.coefficient(own).is_zero())
     }
 
-    /// The quasi-velocities of joints whose rate is one of them.
+    /// The quasi-velocities that are rates of the given joints.
     #[must_use]
     pub fn own(&self, joints: &[usize]) -> Vec<usize> {
         let own = |j: &usize| match self.joint[*j].0.as_slice() {
@@ -98,7 +100,7 @@ impl Rates {
         joints.iter().filter_map(own).collect()
     }
 
-    /// The forms of a leg. With `absolute` false every u is a joint rate.
+    /// The forms of a leg. If `absolute` is false every u is a joint rate.
     #[must_use]
     pub fn new(leg: &Leg, absolute: bool) -> Self {
         let independent: Vec<usize> = leg.independent().collect();
@@ -146,14 +148,13 @@ impl Rates {
     }
 }
 
-/// The antecedent joint, if its z axis is parallel to this joint's, and whether both point the same
-/// way.
+/// The antecedent joint, if its z axis is parallel to this joint's, and the relative sign.
 fn previous_in_run(leg: &Leg, index: usize) -> Option<(usize, Ratio)> {
     let antecedent = leg.joints[index].antecedent?;
     parallel(leg.joints[index].alpha).map(|sign| (antecedent, sign))
 }
 
-/// 1 or -1 if a rotation about x by this angle leaves the z axis parallel to itself.
+/// 1 or -1 if a rotation about x by this angle keeps the z axis parallel to itself.
 #[must_use]
 pub fn parallel(alpha: Angle) -> Option<Ratio> {
     let (cosine, sine) = alpha.cosine_and_sine();

@@ -1,13 +1,13 @@
-//! Motions of a rigid body and wrenches on it, as pairs of vectors in one frame.
+//! Spatial motions and wrenches of a rigid body, as pairs of vectors in one frame.
 
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 
-/// Motion of a body: velocity, partial velocity, or acceleration.
+/// Motion of a body: velocity, partial velocity or acceleration.
 #[derive(Debug, Clone, Copy)]
 pub struct SpatialMotion<'a> {
-    /// Of the reference point.
+    /// Linear part, of the reference point.
     pub linear: Vector3<'a>,
-    /// Of the rotation.
+    /// Angular part.
     pub angular: Vector3<'a>,
 }
 
@@ -21,7 +21,7 @@ pub struct Wrench<'a> {
 }
 
 impl<'a> SpatialMotion<'a> {
-    /// No motion.
+    /// Zero motion.
     #[must_use]
     pub fn zero(arena: &'a Arena) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl<'a> SpatialMotion<'a> {
         part.0[row % 3]
     }
 
-    /// The difference to another motion.
+    /// The difference from another motion.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl<'a> SpatialMotion<'a> {
 }
 
 impl<'a> Wrench<'a> {
-    /// No force and no moment.
+    /// Zero wrench.
     #[must_use]
     pub fn zero(arena: &'a Arena) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl<'a> Wrench<'a> {
         }
     }
 
-    /// The product with a velocity about the same point: power.
+    /// Power: the product with a velocity about the same point.
     #[must_use]
     pub fn power(&self, motion: &SpatialMotion<'a>) -> Expr<'a> {
         self.force.dot(motion.linear) + self.moment.dot(motion.angular)

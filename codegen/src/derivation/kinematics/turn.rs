@@ -1,4 +1,4 @@
-//! The rotation of a joint, applied to vectors and to symmetric matrices, either way.
+//! The rotation of a joint, applied to vectors and symmetric matrices in both directions.
 
 use super::configuration::Configuration;
 use super::joint::joint_turn;
@@ -13,13 +13,13 @@ use crate::mechanism::Leg;
 pub(crate) struct Turn<'a> {
     /// Rot(z, γ) Rot(x, α) where the axes are not parallel.
     tilt: Option<Tilt<'a>>,
-    /// Cosine and sine of the turn about z that follows.
+    /// Cosine and sine of the subsequent turn about z.
     unit: CosineSine<'a>,
     /// The turn about z as a matrix.
     matrix: Matrix3<'a>,
 }
 
-/// A constant rotation: as a matrix, and cosine and sine of its two turns, about z and about x.
+/// A constant rotation as a matrix, and cosine and sine of its rotations about z and x.
 #[derive(Debug)]
 struct Tilt<'a> {
     matrix: Matrix3<'a>,
@@ -28,7 +28,7 @@ struct Tilt<'a> {
 }
 
 impl<'a> Turn<'a> {
-    /// The rotation of a joint; `None` if its sine or cosine does not follow from the configuration.
+    /// The rotation of a joint; `None` if the configuration does not determine its sine or cosine.
     pub(crate) fn new(
         arena: &'a Arena,
         leg: &Leg,
@@ -52,21 +52,21 @@ impl<'a> Turn<'a> {
         })
     }
 
-    /// A vector of the antecedent frame in the joint's frame.
+    /// Transforms a vector from the antecedent frame to the joint's frame.
     pub(crate) fn apply(&self, vector: Vector3<'a>) -> Vector3<'a> {
         let tilt = self.tilt.as_ref();
         let vector = tilt.map_or(vector, |tilt| tilt.matrix.transposed() * vector);
         self.matrix.transposed() * vector
     }
 
-    /// A vector of the joint's frame in the antecedent frame.
+    /// Transforms a vector from the joint's frame to the antecedent frame.
     pub(crate) fn back(&self, vector: Vector3<'a>) -> Vector3<'a> {
         let vector = self.matrix * vector;
         let tilt = self.tilt.as_ref();
         tilt.map_or(vector, |tilt| tilt.matrix * vector)
     }
 
-    /// A wrench of the joint's frame in the axes of the antecedent frame.
+    /// Rotates a wrench from the joint's axes into those of the antecedent frame.
     pub(crate) fn back_wrench(&self, wrench: &Wrench<'a>) -> Wrench<'a> {
         Wrench {
             force: self.back(wrench.force),
@@ -74,7 +74,7 @@ impl<'a> Turn<'a> {
         }
     }
 
-    /// A symmetric matrix of the joint's frame in the antecedent frame.
+    /// Transforms a symmetric matrix from the joint's frame to the antecedent frame.
     pub(crate) fn back_symmetric(&self, matrix: Matrix3<'a>) -> Matrix3<'a> {
         let turned = turned(matrix, 2, self.unit);
         let Some(tilt) = &self.tilt else {
@@ -103,10 +103,11 @@ impl<'a> Tilt<'a> {
     }
 }
 
-/// R S Rᵀ of a symmetric matrix S and a rotation R about a coordinate axis.
+/// R S Rᵀ for a symmetric matrix S and a rotation R about a coordinate axis.
 ///
-/// It takes ten operations for the 2 x 2 block of the other two axes and six for the remaining entries. With
-/// e = s (S_ii - S_jj) + 2 c S_ij the diagonal changes by -s e and s e, and the entry S_ij becomes c e - S_ij.
+/// Takes ten operations for the 2 × 2 block of the other two axes and six for the remaining
+/// entries. With e = s (S_ii - S_jj) + 2 c S_ij the diagonal changes by -s e and s e, and the entry
+/// S_ij becomes c e - S_ij.
 pub(crate) fn turned<'a>(
     matrix: Matrix3<'a>,
     axis: usize,

@@ -1,40 +1,40 @@
-//! Systems with columns of constants, solved for any right side.
+//! Linear systems with constant columns, solved for any right-hand side.
 //!
-//! The rows that the legs of a platform block have its velocity times directions that often do not turn, as those
-//! of a leg in a fixed plane. Unknowns with such columns are eliminated first, with constants alone: what is left for
-//! the others is smaller, and each unknown of the first kind follows from one row. For three legs in planes at
-//! 120° it is one equation, for the turn about the normal.
+//! The constraint rows of a platform contain directions that often are constant, as for a leg in a
+//! fixed plane. Unknowns with constant columns are eliminated first, with constants alone. The
+//! system of the other unknowns is smaller, and each unknown of the first kind follows from one
+//! row. For three legs in planes at 120° one equation remains, for the rotation about the normal.
 
 use super::elimination::{Inverse, Rows, ScaledRow, inverse};
 use crate::cas::{Expr, Number};
 
-/// A square system A x = y with A solved.
+/// A square system A x = y, with A prepared for solving.
 #[derive(Debug)]
 pub(crate) struct Solved<'a> {
-    /// What constants eliminate, in this order.
+    /// Elimination steps with constant factors, in order.
     steps: Vec<Step<'a>>,
-    /// The rows and the unknowns that are left, and the inverse of what stands there.
+    /// The remaining rows and unknowns, and the inverse of their submatrix.
     rows: Vec<usize>,
     columns: Vec<usize>,
     inverse: Vec<ScaledRow<'a>>,
-    /// What that inverse divides by.
+    /// Divisors of that inverse.
     pub(crate) determinants: Vec<Expr<'a>>,
 }
 
-/// An unknown with a column of constants, and the row that it follows from.
+/// An unknown with a constant column, and the row from which it follows.
 #[derive(Debug)]
 struct Step<'a> {
     row: usize,
     column: usize,
     pivot: Number,
-    /// The factor of the row that every other row that is left loses.
+    /// Factors by which the row is subtracted from the other remaining rows.
     others: Vec<(usize, Number)>,
-    /// The row when it is taken.
+    /// Entries of the row at the time of the step.
     entries: Vec<Expr<'a>>,
 }
 
 impl<'a> Solved<'a> {
-    /// Solves A; `home` gives an expression's value at home. `None` for a singular matrix.
+    /// Prepares A; `home` evaluates an expression at home. `None` for a singular matrix.
     pub(crate) fn new(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<Self> {
         let n = matrix.len();
         let mut left = matrix.clone();
@@ -74,7 +74,7 @@ impl<'a> Solved<'a> {
         })
     }
 
-    /// x of a right side.
+    /// x for a right-hand side.
     pub(crate) fn solve(&self, right: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let mut right = right.to_vec();
         for step in &self.steps {
@@ -88,7 +88,7 @@ impl<'a> Solved<'a> {
             let sum: Expr<'a> = parts.map(|(entry, &row)| *entry * right[row]).sum();
             x[column] = row.factor * sum;
         }
-        // Unknowns of later steps, and those of the rest, are known by now.
+        // Unknowns of later steps and of the remaining system are known by now.
         let mut known = self.columns.clone();
         for step in self.steps.iter().rev() {
             let others = known.iter().map(|&column| step.entries[column] * x[column]);
@@ -100,7 +100,8 @@ impl<'a> Solved<'a> {
     }
 }
 
-/// The next unknown with a column of constants in what is left, by its largest one.
+/// The next unknown with a constant column in the remaining system, with its largest entry as
+/// pivot.
 fn step<'a>(left: &Rows<'a>, rows: &[usize], columns: &[usize]) -> Option<Step<'a>> {
     columns.iter().find_map(|&column| {
         let constant = |&row: &usize| Some((row, left[row][column].as_number()?));
@@ -108,7 +109,7 @@ fn step<'a>(left: &Rows<'a>, rows: &[usize], columns: &[usize]) -> Option<Step<'
         let size = |number: Number| number.value().abs();
         let largest = constants.iter().copied().filter(|(_, own)| !own.is_zero());
         let (row, pivot) = largest.reduce(|best, other| {
-            // Rounding does not decide between equals.
+            // Rounding does not decide between equal entries.
             let better = size(other.1) > size(best.1) * (1.0 + 1e-6);
             if better { other } else { best }
         })?;

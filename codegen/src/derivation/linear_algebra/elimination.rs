@@ -1,24 +1,22 @@
 //! Inverses of small symbolic matrices.
 //!
-//! A leg's Jacobian is mostly zeros. Its rows and columns are permuted to block triangular form (a
-//! perfect matching, then the strongly connected components of the graph it leaves), and every
-//! diagonal block is inverted on its own: blocks up to 3 x 3 as adjugate times the reciprocal of the
-//! determinant, so that there is one division per block; larger ones by Gauss-Jordan elimination with
-//! the pivots that are largest at the home configuration. Constant factors that all entries of a row
-//! share are moved into the reciprocal.
+//! A leg's Jacobian is mostly zeros. Its rows and columns are permuted to block triangular form: a
+//! perfect matching, then the strongly connected components of the remaining graph. Every diagonal
+//! block is inverted on its own. Blocks up to 3 × 3 use the adjugate times the reciprocal of the
+//! determinant, one division per block. Larger blocks use Gauss-Jordan elimination with the largest
+//! pivots at the home configuration. Constant factors of a whole row are moved into the reciprocal.
 
 use crate::cas::{Expr, Number};
 
 /// A matrix by rows.
 pub type Rows<'a> = Vec<Vec<Expr<'a>>>;
 
-/// A row as factor × entries. The factor holds the reciprocal of the determinant, the entries are
-/// free of it.
+/// A row as factor × entries. The factor contains the reciprocal of the determinant.
 #[derive(Debug, Clone)]
 pub struct ScaledRow<'a> {
     /// The common factor.
     pub factor: Expr<'a>,
-    /// What it is multiplied with.
+    /// The entries without the common factor.
     pub entries: Vec<Expr<'a>>,
 }
 
@@ -35,19 +33,19 @@ impl<'a> ScaledRow<'a> {
 pub struct Inverse<'a> {
     /// The inverse, by rows.
     pub rows: Rows<'a>,
-    /// The same rows with the reciprocals of the determinants taken out.
+    /// The same rows without the reciprocals of the determinants.
     pub scaled: Vec<ScaledRow<'a>>,
-    /// The divisor of each row: the determinant (or pivot) of the block that determines it, but for
-    /// its sign.
+    /// Divisor of each row: the determinant (or pivot) of its block, up to its sign.
     pub determinants: Vec<Expr<'a>>,
     /// The determinant of the whole matrix.
     pub determinant: Expr<'a>,
-    /// Rows of the largest block.
+    /// Number of rows of the largest block.
     pub largest_block: usize,
 }
 
-/// Inverts a square matrix; `home` gives an expression's value at the home configuration.
-/// `None` if the matrix is singular for structural reasons or at home.
+/// Inverts a square matrix; `home` evaluates an expression at the home configuration.
+///
+/// `None` if the matrix is singular structurally or at home.
 pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<Inverse<'a>> {
     let n = matrix.len();
     let arena = matrix.first()?.first()?.arena();
@@ -56,7 +54,7 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
     let zero_row = vec![arena.zero(); n];
     let mut rows: Rows<'a> = vec![zero_row.clone(); n];
     let mut determinants = vec![arena.one(); n];
-    // Rows are put in the order of their columns, block by block.
+    // Reorder the rows like the columns, block by block.
     let order: Vec<usize> = blocks
         .iter()
         .flatten()
@@ -77,7 +75,7 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
             .collect();
         let (block_inverse, block_determinants, of_block) = invert_block(&inner, home)?;
         determinant = determinant * of_block;
-        // What the right-hand side is after the unknowns of earlier blocks are taken out.
+        // Right-hand side after substitution of the unknowns of earlier blocks.
         let right: Rows<'a> = block_rows
             .iter()
             .map(|&r| {
@@ -131,8 +129,9 @@ fn subtract<'a>(target: &mut [Expr<'a>], factor: Expr<'a>, row: &[Expr<'a>]) {
     }
 }
 
-/// For every column a row of its own where the entry is not zero, by augmenting paths; large entries
-/// at home are tried first.
+/// Assigns a different row with a nonzero entry to every column, by augmenting paths.
+///
+/// Entries that are large at home are tried first.
 fn matching<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<Vec<usize>> {
     let n = matrix.len();
     let mut column_of: Vec<Option<usize>> = vec![None; n];
@@ -177,7 +176,7 @@ fn augment<'a>(
     false
 }
 
-/// The blocks of columns in an order in which each needs only earlier ones (Tarjan).
+/// The blocks of columns in an order in which each depends only on earlier ones (Tarjan).
 fn components(matrix: &Rows<'_>, row_of: &[usize]) -> Vec<Vec<usize>> {
     struct Search<'s, 'a> {
         matrix: &'s Rows<'a>,
@@ -243,7 +242,7 @@ fn invert_block<'a>(block: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
     }
 }
 
-/// Cofactors over the determinant.
+/// Inverse by cofactors over the determinant.
 fn by_adjugate<'a>(block: &Rows<'a>) -> Option<BlockInverse<'a>> {
     let n = block.len();
     let adjugate = adjugate(block);
@@ -260,7 +259,7 @@ fn by_adjugate<'a>(block: &Rows<'a>) -> Option<BlockInverse<'a>> {
     Some((rows, vec![determinant; n], determinant))
 }
 
-/// The adjugate of a matrix of up to three rows: its entry (i, j) is the cofactor of (j, i).
+/// Adjugate of a matrix of up to three rows: its entry (i, j) is the cofactor of (j, i).
 #[must_use]
 pub fn adjugate<'a>(block: &Rows<'a>) -> Rows<'a> {
     let n = block.len();
@@ -292,7 +291,7 @@ pub fn adjugate<'a>(block: &Rows<'a>) -> Rows<'a> {
         .collect()
 }
 
-/// row × reciprocal / scale, with a constant that the whole row shares put into the factor.
+/// row × reciprocal / scale, with common constants of the row moved into the factor.
 fn scaled_row<'a>(row: &[Expr<'a>], reciprocal: Expr<'a>, scale: Number) -> ScaledRow<'a> {
     let parts: Vec<(Number, Expr<'a>)> = row.iter().map(|e| e.factor_and_base()).collect();
     let size = |n: Number| if n.value() < 0.0 { -n } else { n };
@@ -312,8 +311,8 @@ fn scaled_row<'a>(row: &[Expr<'a>], reciprocal: Expr<'a>, scale: Number) -> Scal
     }
 }
 
-/// Gauss-Jordan elimination; every step takes the pivot that is largest at home among the columns
-/// and rows that are left.
+/// Inverse by Gauss-Jordan elimination; each pivot is the largest at home among remaining rows and
+/// columns.
 fn by_elimination<'a>(
     block: &Rows<'a>,
     home: &dyn Fn(Expr<'a>) -> f64,

@@ -1,7 +1,7 @@
 //! Symbolic least squares on the actuators: the pseudo-inverse of J_p^inv, eqs. (21) and (22).
 //!
-//! S = (J_p^inv)ᵀ J_p^inv is symmetric and positive definite outside singularities; it is factored as
-//! L D Lᵀ without square roots.
+//! S = (J_p^inv)ᵀ J_p^inv is symmetric, and positive definite outside singularities. It is factored
+//! as L D Lᵀ without square roots.
 
 use super::elimination::Rows;
 use crate::cas::Expr;
@@ -10,7 +10,7 @@ use crate::derivation::names::name_matrix;
 /// S = L D Lᵀ.
 #[derive(Debug)]
 pub struct Factored<'a> {
-    /// L, unit lower triangular (entries below the diagonal).
+    /// Unit lower triangular L (entries below the diagonal).
     lower: Rows<'a>,
     /// The reciprocals of D.
     reciprocals: Vec<Expr<'a>>,
@@ -90,7 +90,7 @@ impl<'a> Factored<'a> {
                 let _ = row[k].named(&format!("l_{}_{}", i + 1, k + 1));
             }
         }
-        // What elimination has left below the pivots.
+        // The Schur complements below the pivots.
         name_matrix(&s, "schur");
         Self {
             lower,

@@ -1,22 +1,23 @@
-//! Torques that move nothing: the orthonormal basis N of the null space of (J_p^inv)ᵀ.
+//! Internal torques: the orthonormal basis N of the null space of (J_p^inv)ᵀ.
 //!
-//! The basis is that of Gram and Schmidt: the unit torques of the projected actuators, one after the other,
-//! without what moves the platform and without their parts along the vectors before. Column k is zero on the
-//! projected actuators before the k-th, and positive on the k-th.
+//! The basis results from Gram-Schmidt orthogonalisation. The start vectors are the unit torques of
+//! the redundant actuators, projected onto the null space. Column k is zero on the redundant
+//! actuators before the k-th and positive on the k-th.
 //!
-//! With the kept rows J_a of J_p^inv, inverted once, c_j = J_a^-T j_j is what the kept actuators do where the
-//! projected one j does one; [-c_j; e_j] moves nothing. In these coordinates the kept rows are the identity
-//! and JᵀJ of the kept actuators and the projected ones from j on is 1 + Σ c cᵀ. Its inverse Q is carried from
-//! the last projected actuator to the first (J. Sherman, W. J. Morrison, 1950): with y = Q c_k and
-//! η = 1 + c_k · y, column k is 1/√η on its own actuator, -u = -y/√η on the kept ones and -c_j · u on the
-//! projected ones behind, and Q becomes Q - u uᵀ. So it takes r³ operations once, r² for each projected
-//! actuator, and r for each number of the result.
+//! With the kept rows J_a of J_p^inv, inverted once, c_j = J_a^-T j_j are the torques of the kept
+//! actuators that equal a unit torque of the redundant actuator j; [-c_j; e_j] is internal. In
+//! these coordinates the kept rows are the identity, and JᵀJ of the kept actuators and the
+//! redundant ones from j on is 1 + Σ c cᵀ. Its inverse Q is updated from the last redundant
+//! actuator to the first (J. Sherman, W. J. Morrison, 1950). With y = Q c_k, η = 1 + c_k · y and
+//! u = y/√η, column k is 1/√η on its own actuator, -u on the kept ones and -c_j · u on the later
+//! redundant ones; Q becomes Q - u uᵀ. This takes r³ operations once, r² per redundant actuator,
+//! and r per entry of the result.
 
 use super::elimination::{Inverse, Rows};
 use super::linear::dot;
 use crate::cas::{Arena, Expr};
 
-/// N, n x (n - r), of the rows of J_p^inv; `inverse` is that of the kept ones.
+/// N, n × (n - r), from the rows of J_p^inv; `inverse` is that of the kept rows.
 #[must_use]
 pub fn null_space<'a>(
     arena: &'a Arena,
@@ -55,7 +56,7 @@ pub fn null_space<'a>(
     basis
 }
 
-/// c = J_a^-T j: by the inverse's rows, or, for few rows j, by its scaled rows.
+/// c = J_a^-T j, by the rows of the inverse or, for few rows j, by its scaled rows.
 fn share<'a>(row: &[Expr<'a>], inverse: &Inverse<'a>, is_one_of_few: bool) -> Vec<Expr<'a>> {
     let column = |entries: &dyn Fn(usize, usize) -> Expr<'a>, by: &[Expr<'a>], c: usize| {
         (0..by.len())
@@ -73,7 +74,7 @@ fn share<'a>(row: &[Expr<'a>], inverse: &Inverse<'a>, is_one_of_few: bool) -> Ve
     columns.map(|c| column(&entry, &scaled, c)).collect()
 }
 
-/// Q = 1 - Σ u uᵀ: as a matrix, or, for few u, as these.
+/// Q = 1 - Σ u uᵀ, as a matrix or, for few u, as a list of u.
 enum Metric<'a> {
     Matrix(Rows<'a>),
     Units(Rows<'a>),
@@ -103,7 +104,7 @@ impl<'a> Metric<'a> {
         }
     }
 
-    /// Takes u uᵀ away.
+    /// Subtracts u uᵀ.
     fn subtract(&mut self, unit: Vec<Expr<'a>>) {
         match self {
             Self::Units(units) => units.push(unit),

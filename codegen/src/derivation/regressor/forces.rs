@@ -1,4 +1,5 @@
-//! Generalised forces of given parameters: the columns of the identification model, added up before the projection.
+//! Generalised forces for given parameters: columns of the identification model, summed before
+//! projection.
 
 use super::Projection;
 use crate::cas::Expr;
@@ -13,8 +14,9 @@ use crate::mechanism::JointIndex;
 use overact_description::StandardParameter;
 
 impl<'a> Robot<'a> {
-    /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected. What acts on
-    /// actuated joints alone goes to `actuators`.
+    /// Γ for all parameters at once, r numbers: body wrenches are summed before they are projected.
+    ///
+    /// Forces on actuated joints alone go to `actuators`.
     #[must_use]
     pub(crate) fn generalised_forces(
         &self,
@@ -24,7 +26,7 @@ impl<'a> Robot<'a> {
         actuators: &mut ActuatedJointForces<'a>,
     ) -> Vec<Expr<'a>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
-        // Forces on the twist coordinates, of all that moves with the platform.
+        // Forces on the twist coordinates of all bodies that move with the platform.
         let mut on_twist = vec![self.arena.zero(); self.free.len()];
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
             let mut forces = self.leg_forces(motion, values, l, &mut on_twist);
@@ -55,8 +57,9 @@ impl<'a> Robot<'a> {
         total
     }
 
-    /// The forces on the quasi-velocities of a leg; those of its bodies that move with the platform are added
-    /// to `on_twist`.
+    /// Forces on the quasi-velocities of a leg.
+    ///
+    /// Those of bodies that move with the platform are added to `on_twist`.
     pub(crate) fn leg_forces(
         &self,
         motion: &RobotMotion<'a>,
@@ -98,7 +101,7 @@ impl<'a> Robot<'a> {
         forces
     }
 
-    /// The wrench of those inertial parameters that are a body's own.
+    /// Wrench of a body's inertial parameters.
     fn wrench(
         &self,
         values: &[(BodyParameter, Expr<'a>)],

@@ -1,9 +1,10 @@
-//! The identification model: one column per standard parameter, eq. (30) and eq. (36).
+//! The identification model: one column per standard parameter, eqs. (30) and (36).
 //!
-//! A column of case 1 is Σ_i (∂u_i/∂v)ᵀ s_i, where s_i is the generalised force on u_i that the parameter
-//! alone produces: for a body parameter its unit wrench projected on the partial velocities, for a
-//! joint parameter a scalar times the reduced Jacobian of that joint. Case 2 is the same with the rows
-//! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
+//! A column of the platform projection is Σ_i (∂u_i/∂v)ᵀ s_i, where s_i is the generalised force of
+//! the parameter on u_i. For a body parameter, s_i is its unit wrench projected on the partial
+//! velocities. For a joint parameter the column is a scalar times the reduced Jacobian of that
+//! joint. The actuator projection uses the rows ∂u_i/∂v J_a⁻¹, with J_a the kept rows of J_p^inv:
+//! rows are transformed once, never columns.
 
 mod forces;
 
@@ -19,7 +20,7 @@ use crate::derivation::underivable::Underivable;
 use crate::mechanism::JointIndex;
 use overact_description::StandardParameter;
 
-/// What generalised forces are projected on.
+/// Coordinates on which generalised forces are projected.
 #[derive(Debug)]
 pub struct Projection<'a> {
     /// ∂u/∂(projected coordinates) of every leg.
@@ -28,12 +29,13 @@ pub struct Projection<'a> {
     on_platform: bool,
     /// ∂v/∂(projected coordinates).
     platform: Rows<'a>,
-    /// The determinants that were divided by.
+    /// The determinants of the divisors.
     pub determinants: Vec<Expr<'a>>,
 }
 
 impl<'a> Projection<'a> {
-    /// ∂v/∂(projected coordinates): the identity in case 1, J_a⁻¹ in case 2.
+    /// ∂v/∂(projected coordinates): the identity in the platform projection, J_a⁻¹ in the actuator
+    /// projection.
     #[must_use]
     pub const fn platform_rows(&self) -> &Rows<'a> {
         &self.platform
@@ -41,7 +43,7 @@ impl<'a> Projection<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// Case 1: on the platform's twist coordinates.
+    /// Platform projection: on the platform's twist coordinates.
     #[must_use]
     pub fn project_on_platform(&self) -> Projection<'a> {
         let r = self.mechanism.dof();
@@ -58,7 +60,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Case 2: on the kept actuators.
+    /// Actuator projection: on the kept actuators.
     ///
     /// # Errors
     /// Kept actuators that never determine the platform's motion.
@@ -84,7 +86,7 @@ impl<'a> Robot<'a> {
         })
     }
 
-    /// The column of a parameter, r numbers.
+    /// Column of a parameter, r numbers.
     #[must_use]
     pub fn column(
         &self,
@@ -125,7 +127,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The column of a mass at a leg's end, of its acceleration less gravity.
+    /// Column of a mass at a leg's end, from its acceleration minus gravity.
     fn project_end(
         &self,
         projection: &Projection<'a>,
@@ -148,7 +150,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The column of a body that moves with the platform.
+    /// Column of a body that moves with the platform.
     fn project_platform_body(
         &self,
         projection: &Projection<'a>,
@@ -171,8 +173,10 @@ impl<'a> Robot<'a> {
         self.combine(&projection.platform, &forces)
     }
 
-    /// A column from other columns. The platform's and each leg's parts are added up on their own, so
-    /// that legs that meet in a platform point share theirs. `None` if a column is missing.
+    /// A column as a combination of other columns; `None` if one of them is missing.
+    ///
+    /// The platform's and each leg's parts are summed separately, so that legs that meet in a
+    /// platform point share them.
     #[must_use]
     pub(crate) fn combined(
         &self,
@@ -202,7 +206,7 @@ impl<'a> Robot<'a> {
         Some((0..self.mechanism.dof()).map(entry).collect())
     }
 
-    /// The force on a joint that one of its own parameters produces, eq. (5).
+    /// Force of a joint's own parameter on the joint, eq. (5).
     pub(crate) fn joint_force(
         &self,
         motion: &RobotMotion<'a>,
@@ -219,7 +223,7 @@ impl<'a> Robot<'a> {
             StandardParameter::Ia => form.value(self.arena, &motion.u_dot[leg]),
             StandardParameter::K => self.spring_force(at),
             StandardParameter::Off => self.arena.one(),
-            // The ten of a body act through its wrench.
+            // The ten inertial parameters act through the body's wrench.
             symbol => {
                 debug_assert!(symbol.is_inertial(), "a joint's parameter without a force");
                 self.arena.zero()
@@ -227,10 +231,10 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Σ s_i ∂u_i/∂v of a leg's generalised forces s.
+    /// Σ s_i ∂u_i/∂v for a leg's generalised forces s.
     ///
-    /// On the platform the same forces are F = Σ s_i f_i at the leg's end, with the moment p × F about
-    /// the platform's origin: where several s_i are there, that is fewer products.
+    /// On the platform the same forces are F = Σ s_i f_i at the leg's end, with the moment p × F
+    /// about the platform's origin. For several nonzero s_i this takes fewer products.
     fn project_leg(
         &self,
         projection: &Projection<'a>,
@@ -265,8 +269,9 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// Σ c_i x_i as c_0 (x_0 + Σ (c_i / c_0) x_i): the inner sum often has a meaning of its own, such as
-/// the acceleration of a platform point.
+/// Σ c_i x_i as c_0 (x_0 + Σ (c_i / c_0) x_i).
+///
+/// The inner sum often has a meaning of its own, such as the acceleration of a platform point.
 fn normalised_sum<'a>(
     arena: &'a Arena,
     terms: impl Iterator<Item = (Expr<'a>, Number)>,

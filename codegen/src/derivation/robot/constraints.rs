@@ -1,9 +1,10 @@
-//! What the legs of a platform with parasitic motion block, and how it moves.
+//! Constraints of the legs on a platform with parasitic motion, and the resulting motion.
 //!
-//! The platform is derived as a free body, and every leg is closed on it as on any other. A leg with more
-//! shared components than joints leaves rows over: a wrench (a, n) at its end that no joint feels,
-//! a · Ṗ + n · ω = 0, which are the rows of A t = 0. Its derivative needs none of A: with the bias accelerations
-//! of the leg's end at u̇ = 0 it is a · (P̈ - b) + n · (ω̇ - β) = 0, and gives the dependent part of ṫ.
+//! The platform is derived as a free body, and every leg is closed on it as on any other platform.
+//! A leg with more shared components than joints has remaining rows. Each is a wrench (a, n) at its
+//! end that does no work on the joints, a · Ṗ + n · ω = 0: a row of A t = 0. Its derivative does
+//! not require that of A. With the bias accelerations b, β of the leg's end at u̇ = 0 it is
+//! a · (P̈ - b) + n · (ω̇ - β) = 0, which gives the dependent components of ṫ.
 
 use super::Robot;
 use crate::cas::{Expr, Number, Ratio, Vector3};
@@ -23,8 +24,9 @@ use crate::mechanism::{End, Leg, Motion, TwistCoordinate};
 use nalgebra::DMatrix;
 
 impl<'a> Robot<'a> {
-    /// Of a platform with parasitic motion, how its velocity follows from the independent coordinates: by those rows
-    /// that determine the dependent ones best at home.
+    /// Derives the velocity of a platform with parasitic motion from the independent coordinates.
+    ///
+    /// Uses the rows that best determine the dependent components at home.
     ///
     /// # Errors
     /// Rows that do not determine them.
@@ -66,7 +68,8 @@ impl<'a> Robot<'a> {
         all
     }
 
-    /// The conditions on which the independent coordinates determine the others.
+    /// Guards the determinants that are zero if the independent coordinates do not determine the
+    /// others.
     fn guard_coordinates(&mut self, determinants: &[Expr<'a>]) {
         for determinant in determinants {
             let (_, base) = determinant.factor_and_base();
@@ -81,7 +84,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// What is had per component of the platform's velocity, per independent coordinate.
+    /// Projects quantities per component of the platform's velocity on the independent coordinates.
     pub(crate) fn on_independent(&self, free: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
         match &self.parasitic_motion {
             Some(parasitic) => parasitic.on_independent(&free),
@@ -89,7 +92,8 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Velocity and acceleration of the platform in the directions of its pose. `None` without a platform.
+    /// Velocity and acceleration of the platform along its pose coordinates. `None` without a
+    /// platform.
     pub(crate) fn free_motion(
         &self,
         twist: &[Expr<'a>],
@@ -128,7 +132,7 @@ impl<'a> Robot<'a> {
         (velocity, parasitic.together(acceleration, &others))
     }
 
-    /// By how much the pose misses what the legs allow: for each row of A, with the leg.
+    /// Violation of the legs' constraints by the pose: for each row of A, with the leg.
     pub(crate) fn blocked_errors(&self) -> Vec<(Expr<'a>, usize)> {
         let rows = self
             .parasitic_motion
@@ -149,7 +153,7 @@ impl<'a> Robot<'a> {
         errors.collect()
     }
 
-    /// The conditions on which the pose is one that the legs allow.
+    /// Guards that the legs allow the pose.
     pub(crate) fn closed_guards(&self) -> Vec<Guard<'a>> {
         let scale = self.mechanism.length_scale();
         let errors = self.blocked_errors().into_iter();
@@ -162,7 +166,7 @@ impl<'a> Robot<'a> {
         errors.map(guard).collect()
     }
 
-    /// The conditions on which coordinates of the pose are zero, as those that legs allow are.
+    /// Guards that the coordinates assumed zero are zero.
     pub(crate) fn still_guards(&self, still: &[usize]) -> Vec<Guard<'a>> {
         let rows = self
             .parasitic_motion
@@ -179,14 +183,14 @@ impl<'a> Robot<'a> {
         still.iter().map(guard).collect()
     }
 
-    /// The components of the platform's velocity, in the directions of its pose.
+    /// The components of the platform's velocity along its pose coordinates.
     pub(crate) fn free_coordinates(motion: Option<Motion>) -> Vec<TwistCoordinate> {
         motion.map(|own| own.of_pose().twist()).unwrap_or_default()
     }
 }
 
-/// By how much a leg's end misses its place, in the leg's axes: a position (m), and half the axial vector of the
-/// rotation that is left (rad for small ones).
+/// Placement error of a leg's end in the leg's axes: a position (m), and half the axial vector of
+/// the remaining rotation (rad for small ones).
 pub(crate) fn placement_error<'a>(
     platform: &PlatformPose<'a>,
     arm: Vector3<'a>,

@@ -1,4 +1,4 @@
-//! Whether a mechanism has a model, without deriving it.
+//! Checks whether a mechanism has a model, without deriving it.
 
 use super::Robot;
 use crate::cas::Arena;
@@ -7,8 +7,10 @@ use crate::derivation::selection::Formulation;
 use crate::derivation::underivable::Underivable;
 use crate::mechanism::Mechanism;
 
-/// Closures and the partition of case 2 are all that can be without a symbolic inverse; functions are
-/// made of them, and where no rule solves a leg they start from Newton's method.
+/// Checks the closures and the partition of the actuator projection.
+///
+/// Only these can lack a symbolic inverse. Functions are built from them, and if no rule solves a
+/// leg they start from Newton's method.
 ///
 /// # Errors
 /// A leg or a partition that is singular in every configuration.

@@ -1,5 +1,5 @@
-//! The legs of a robot, derived one after the other: the joints from what a leg ends on, the axes in which the closure
-//! is seen, and the closure itself.
+//! Derivation of a robot's legs, one after the other: joints from the end body, observer's axes,
+//! closure.
 
 use super::{Robot, name_rows};
 use crate::cas::{Expr, Vector3};
@@ -19,10 +19,11 @@ use crate::derivation::underivable::Underivable;
 use crate::mechanism::Leg;
 
 impl<'a> Robot<'a> {
-    /// Derives a leg and what it knows of the robot; those before it are derived.
+    /// Derives a leg and its relation to the robot; earlier legs are already derived.
     ///
     /// # Errors
-    /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
+    /// A leg whose joints do not follow from the pose in closed form, or a structurally singular
+    /// leg.
     pub(crate) fn derive_leg(
         &mut self,
         index: usize,
@@ -81,8 +82,8 @@ impl<'a> Robot<'a> {
         Ok(())
     }
 
-    /// Finds the sines and cosines of a leg's joints from the pose of what it ends on, where the configuration is
-    /// one.
+    /// Solves the sines and cosines of a leg's joints from the pose of its end body, if the pose is
+    /// the input.
     fn solve_joints(
         &mut self,
         index: usize,
@@ -105,8 +106,8 @@ impl<'a> Robot<'a> {
         Ok(())
     }
 
-    /// The frames of a leg in the axes of its closure; first those in which the closure is seen, where sums over
-    /// divisors are looked for.
+    /// Frames of a leg in the axes of its closure, derived in the observer's axes first if sums
+    /// over divisors are searched.
     fn frames_of(
         &self,
         index: usize,
@@ -143,7 +144,7 @@ impl<'a> Robot<'a> {
         })
     }
 
-    /// Gravity as an acceleration of the ground, for a leg that stands on it.
+    /// Gravity as an acceleration of the ground, for a leg that starts from it.
     fn gravity_of(
         &self,
         leg: &Leg,
@@ -174,7 +175,7 @@ impl<'a> Robot<'a> {
         LegGravity { ground, end_offset }
     }
 
-    /// The closure of a leg on what it ends on.
+    /// Closure of a leg on its end body.
     fn close(
         &self,
         index: usize,
@@ -199,7 +200,8 @@ impl<'a> Robot<'a> {
         })
     }
 
-    /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
+    /// The leg's end body: the platform, or a body relative to the leg's start. `None` without an
+    /// end.
     pub(crate) fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
         if let Some(platform) = &self.platform {
             return Some(platform.clone());
@@ -209,7 +211,7 @@ impl<'a> Robot<'a> {
         self.end_seen(index, &axes)
     }
 
-    /// The axes in which a chain's closure is seen, where they are chosen.
+    /// The chosen observer's axes of a chain's closure, if any.
     fn observer_frame_of(&self, index: usize, formulation: &Formulation) -> Option<ObserverFrame> {
         let observer_frame = formulation
             .observer_frames
@@ -226,7 +228,7 @@ impl<'a> Robot<'a> {
         })
     }
 
-    /// What a chain ends on, as it is seen from the body that it starts from, in given axes.
+    /// End body of a chain in given axes, relative to the body at its start.
     fn end_seen(&self, index: usize, axes: &Orientation) -> Option<PlatformPose<'a>> {
         let leg = &self.mechanism.legs[index];
         leg.end.as_ref()?;

@@ -1,5 +1,5 @@
-//! The derivation of one robot in one graph: configuration, closures, motion, and what every
-//! function is made of.
+//! Derivation of one robot in one graph: configuration, closures and motion, from which all
+//! functions are built.
 
 pub(crate) mod constraints;
 pub(crate) mod derivable;
@@ -31,18 +31,19 @@ use std::cell::RefCell;
 pub struct Robot<'a> {
     /// The graph.
     pub arena: &'a Arena,
-    /// The robot.
+    /// The mechanism.
     pub mechanism: &'a Mechanism,
-    /// Sines and cosines.
+    /// Sines and cosines of the joints.
     pub configuration: Configuration<'a>,
     /// The platform's pose; `None` for a tree and for a skeleton with chains.
     pub platform: Option<PlatformPose<'a>>,
     /// The independent twist coordinates.
     pub twist: Vec<TwistCoordinate>,
-    /// The components of the platform's velocity in the directions of its pose: the independent ones, or all
-    /// six of a platform with parasitic motion.
+    /// Components of the platform's velocity along its pose coordinates.
+    ///
+    /// They are the independent ones, or all six of a platform with parasitic motion.
     pub(crate) free: Vec<TwistCoordinate>,
-    /// How these follow from the independent ones, if the platform has parasitic motion.
+    /// Relation of these to the independent ones, for a platform with parasitic motion.
     pub(crate) parasitic_motion: Option<ParasiticMotion<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
@@ -56,17 +57,18 @@ pub struct Robot<'a> {
     pub(crate) by_ends: bool,
     /// See [`Formulation::by_rows`].
     by_rows: bool,
-    /// Conditions for the model to have a value.
+    /// Guards of the model.
     pub guards: Vec<Guard<'a>>,
-    /// The motions that were asked for, whose quantities are named when all is derived.
+    /// Derived motions, whose quantities are named at the end of the derivation.
     pub(crate) motions: RefCell<Vec<Moved<'a>>>,
 }
 
 impl<'a> Robot<'a> {
-    /// Derives configuration and closures; `still` are coordinates of the pose that are known to be zero.
+    /// Derives configuration and closures; `still` are pose coordinates that are known to be zero.
     ///
     /// # Errors
-    /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
+    /// A leg whose joints do not follow from the pose in closed form, or a structurally singular
+    /// leg.
     pub fn new(
         arena: &'a Arena,
         mechanism: &'a Mechanism,
@@ -75,14 +77,15 @@ impl<'a> Robot<'a> {
         still: &[usize],
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
-        // The configuration of a tree is its joints, whatever it is called.
+        // The configuration of a tree consists of its joints, whatever the input is called.
         let from = if mechanism.is_tree() {
             MotionInput::Joints
         } else {
             from
         };
-        // Functions scale the quaternion of a pose to length one, and legs at angles have determinants that are
-        // multiples of lengths. Where the platform may have any orientation, knowing this finds no fewer operations.
+        // Functions normalise the quaternion of a pose, and legs at angles have determinants that
+        // are multiples of lengths. If the platform may have any orientation, this knowledge saves
+        // no operations.
         if mechanism.is_parasitic() {
             arena.find_irrational_multiples();
             arena.unit_quaternion("pose", mechanism.pose_len() - 4, still);
@@ -119,7 +122,8 @@ impl<'a> Robot<'a> {
         Ok(robot)
     }
 
-    /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
+    /// Transforms the legs' rows per component of the platform's velocity to rows per independent
+    /// coordinate.
     fn follow_independent(&mut self) {
         let partials = self.parasitic_motion.as_ref().filter(|_| self.by_ends);
         let partials = partials.map(|parasitic| parasitic.partials(self.arena));
@@ -147,7 +151,7 @@ impl<'a> Robot<'a> {
         LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0, None)
     }
 
-    /// The rates of joints that are independent coordinates, per independent coordinate.
+    /// Rates of joints that are independent coordinates, per independent coordinate.
     pub(crate) fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
         let dof = self.mechanism.dof();
         let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
@@ -155,7 +159,7 @@ impl<'a> Robot<'a> {
             .collect()
     }
 
-    /// The value of an expression at the home configuration, with all rates set to small numbers.
+    /// Value of an expression at the home configuration, with all rates set to small numbers.
     #[must_use]
     pub(crate) fn at_home(&self, expr: Expr<'a>) -> f64 {
         self.mechanism.home.value(self.arena, expr)
@@ -242,7 +246,7 @@ impl<'a> Robot<'a> {
         Some(motion)
     }
 
-    /// The quasi-velocities of a leg: from the velocity of what it ends on, or from the independent rates.
+    /// Quasi-velocities of a leg, from the velocity of its end body or from the independent rates.
     pub(crate) fn rates_of_leg(
         &self,
         state: &LegState<'a>,
@@ -257,7 +261,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// J_p^inv, n x r: the reduced Jacobian's rows of the actuated joints.
+    /// J_p^inv, n × r: the rows of the actuated joints in the reduced Jacobians.
     #[must_use]
     pub fn inverse_jacobian(&self) -> Rows<'a> {
         let all = self.joint_rows();
@@ -268,7 +272,7 @@ impl<'a> Robot<'a> {
             .collect()
     }
 
-    /// ∂q̇_t/∂v, n_t x r.
+    /// ∂q̇_t/∂v, n_t × r.
     #[must_use]
     pub(crate) fn joint_rows(&self) -> Rows<'a> {
         let mut rows = Vec::new();
@@ -282,7 +286,7 @@ impl<'a> Robot<'a> {
         rows
     }
 
-    /// Values of a form of quasi-velocities for all joints of q_t.
+    /// Values for all joints of q_t of their forms of quasi-velocities.
     #[must_use]
     pub fn joint_values(&self, u: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
         let mut values = Vec::new();

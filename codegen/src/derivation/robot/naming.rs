@@ -1,7 +1,8 @@
-//! Names of what only a reader would ask for: velocities and accelerations of the legs' ends, levers, joint
-//! rates. They are given when all is derived.
+//! Names of quantities that only readers of generated code need: velocities and accelerations of
+//! the legs' ends, levers, joint rates.
 //!
-//! Quantities that the derivation passes through on its way are named where they arise.
+//! They are assigned at the end of the derivation. Quantities that the derivation uses itself are
+//! named where they arise.
 
 use super::Robot;
 use crate::cas::Expr;
@@ -14,8 +15,10 @@ use crate::derivation::names::{AXES, Names, coordinate_label, joined};
 use crate::mechanism::Leg;
 
 impl<'a> Robot<'a> {
-    /// Names what only a reader asks for. It comes last, for it makes expressions, and one that is there
-    /// before the derivation wants it would be written in the reader's form.
+    /// Names quantities that only readers need.
+    ///
+    /// Runs last, because it builds expressions: the derivation would reuse them in the reader's
+    /// form.
     pub(crate) fn give_names(&self) {
         self.name_closures();
         for moved in self.motions.borrow().iter() {
@@ -23,7 +26,8 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Names what is constant along a motion: levers of the legs' ends, wrenches, rows of Jacobians.
+    /// Names quantities that are constant along a motion: levers of the legs' ends, wrenches, rows
+    /// of Jacobians.
     fn name_closures(&self) {
         let mut names = Names::default();
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
@@ -37,7 +41,7 @@ impl<'a> Robot<'a> {
         names.give();
     }
 
-    /// ∂q̇_j/∂v of the joints whose rate is no quasi-velocity of its own.
+    /// Names ∂q̇_j/∂v of the joints whose rate is no quasi-velocity.
     fn name_joint_rows(&self, names: &mut Names<'a>, leg: &Leg, state: &LegState<'a>) {
         for (index, joint) in leg.joints.iter().enumerate() {
             let row = state.rates.joint[index].row(self.arena, &state.rows);
@@ -48,7 +52,8 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Names case 2: J_a⁻¹, its determinants, and ∂u/∂q̇_a of every leg.
+    /// Names quantities of the actuator projection: J_a⁻¹, its determinants, and ∂u/∂q̇_a of every
+    /// leg.
     pub(crate) fn name_partition(&self, inverted: &Inverse<'a>, legs: &[Rows<'a>], kept: &[usize]) {
         let mut names = Names::default();
         let kept: Vec<String> = kept.iter().map(|at| format!("a{}", at + 1)).collect();
@@ -82,7 +87,8 @@ impl<'a> Robot<'a> {
         names.give();
     }
 
-    /// Names what moves: the platform's vectors in its own axes, and every leg's end and joints.
+    /// Names quantities of a motion: the platform's vectors in its own axes, and every leg's end
+    /// and joints.
     fn name_motion(&self, moved: &Moved<'a>) {
         let Moved {
             motion,
@@ -143,7 +149,7 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// The common factor of a leg's wrenches, and the wrenches without and with it.
+/// Names the common factor of a leg's wrenches, and the wrenches without and with it.
 fn name_wrenches<'a>(names: &mut Names<'a>, leg: &Leg, closure: &LegClosure<'a>) {
     let positive = |value: Expr<'a>| {
         if value.handle().is_negative() {

@@ -1,6 +1,8 @@
-//! The body of a function whose legs run side by side in the lanes of vectors: what all share, then a loop over as
-//! many legs at once as a vector holds. Columns of legs go to their places in the output there ([`split`]); what is
-//! added up over all legs is followed by what the sums are needed for ([`sums`]).
+//! The body of a function whose legs run in SIMD lanes.
+//!
+//! Shared values come first, then a loop over batches of legs. It either writes the legs' columns
+//! of the output ([`split`]), or sums over all legs, after which the output follows from the sums
+//! ([`sums`]).
 
 mod split;
 mod sums;
@@ -18,27 +20,27 @@ use quote::quote;
 use split::Split;
 pub(super) use work::Work;
 
-/// A function's body, and what its item tells of it.
+/// A function's body with data for its item.
 pub(super) struct Loop {
     /// The statements.
     pub(super) statements: TokenStream,
-    /// What is given back: nothing where columns went to their places.
+    /// The returned value; empty if the columns are written to the output.
     pub(super) value: TokenStream,
-    /// Where sections begin.
+    /// Starts of sections.
     pub(super) sections: Sections,
-    /// All names that are assigned.
+    /// All assigned names.
     pub(super) names: Vec<String>,
 }
 
-/// Legs of which half of the widest registers would be empty.
+/// Number of legs up to which half of the widest registers would be empty.
 const FEW: usize = 4;
 
-/// Names that the loop has for itself.
+/// Names reserved for the loop.
 const RESERVED: [&str; 10] = [
     "at", "added", "failed", "lanes", "own", "rows", "sums", "solution", "output", "place",
 ];
 
-/// The body of a function in lanes, which stands in a function of this name.
+/// The body of a function in lanes, which is placed in a function of this name.
 pub(super) fn write(
     model: &RobotModel,
     function: &CompiledFunction,
@@ -108,7 +110,7 @@ pub(super) fn write(
     }
 }
 
-/// The headings in the order of the statements: of what all share, of the tables, of what belongs to a leg, of the sums.
+/// Headings in the order of the statements: shared values, tables, legs, sums.
 fn headings(
     lanes: &Lanes,
     shared: Vec<(String, String)>,
@@ -144,25 +146,25 @@ fn headings(
         .collect()
 }
 
-/// The turns in which the legs are gone through.
+/// The batches of legs.
 fn places(lanes: &Lanes) -> TokenStream {
     let count = unsuffixed(lanes.legs.len());
     quote!(::overact::lanes::places::<V, #count>(lanes))
 }
 
-/// What stands around the statements of the legs.
+/// Statements around those of the legs.
 struct Parts {
-    /// Before all else: the zeros of the output, or the output itself.
+    /// First: the zeros of the output, or the output itself.
     zeros: TokenStream,
-    /// In front of the loop.
+    /// Before the loop.
     before: TokenStream,
-    /// At the end of each turn.
+    /// At the end of each iteration.
     of_legs: TokenStream,
-    /// Behind the loop; `output` is known then.
+    /// After the loop, when `output` is known.
     after: TokenStream,
 }
 
-/// The steps that all legs share and that those of a leg need: each is computed once, in front of the loop.
+/// The shared steps that those of a leg need; each is computed once, before the loop.
 fn between(lanes: &Lanes) -> Vec<bool> {
     let of_legs = lanes.of_legs();
     let mut kept = vec![false; of_legs.len()];
@@ -177,7 +179,7 @@ fn between(lanes: &Lanes) -> Vec<bool> {
     kept
 }
 
-/// The constants of the legs, and their names.
+/// The constants of the legs, with their names.
 fn tables(lanes: &Lanes) -> TokenStream {
     let count = unsuffixed(lanes.legs.len());
     let numbers = |values: Vec<f64>| {
@@ -200,7 +202,7 @@ fn tables(lanes: &Lanes) -> TokenStream {
     }
 }
 
-/// The arrays of which a leg has elements of its own.
+/// The arrays with elements for each leg.
 fn arrays(lanes: &Lanes) -> TokenStream {
     let inputs = &lanes.program.inputs;
     let used = lanes.program.used_inputs();
@@ -235,7 +237,7 @@ fn arrays(lanes: &Lanes) -> TokenStream {
     quote!(#(#arrays)*)
 }
 
-/// The rows of a table for the legs of a turn, each written out: an array that is mapped is not inlined.
+/// Rows of a table for the legs of a batch, written out because a mapped array is not inlined.
 fn rows(table: &TokenStream, count: usize) -> TokenStream {
     let row = |at| {
         let at = unsuffixed(at);
@@ -249,7 +251,7 @@ fn unsuffixed(number: usize) -> Literal {
     Literal::usize_unsuffixed(number)
 }
 
-/// The magnitudes at home of a guarded value, one for each leg.
+/// Magnitudes at home of a guarded value, one for each leg.
 fn home(lanes: &Lanes, guard: usize) -> TokenStream {
     let homes = lanes.homes.get(guard).map_or(&[][..], Vec::as_slice);
     match homes {

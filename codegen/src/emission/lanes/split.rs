@@ -1,4 +1,4 @@
-//! Statements of a program in lanes: those that all legs share, and those of a leg.
+//! Splits statements of a program in lanes into shared ones and those of a leg.
 
 use super::{Parts, home, unsuffixed};
 use crate::emission::expression::{Writer, magnitude, number};
@@ -9,23 +9,23 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::HashSet;
 
-/// Statements, those that all legs share and those of a leg.
+/// Shared statements and those of a leg.
 pub(super) struct Split<'a> {
     pub(super) lanes: &'a Lanes,
     pub(super) shared_writer: Writer<'a>,
     pub(super) own_writer: Writer<'a>,
-    /// What is assigned of a leg.
+    /// Names assigned per leg.
     pub(super) own_names: HashSet<String>,
     pub(super) shared: Vec<TokenStream>,
     pub(super) own: Vec<TokenStream>,
     /// Whether a leg may fail.
     pub(super) has_guards: bool,
-    /// How many guards were written.
+    /// Number of guards written.
     guards: usize,
 }
 
 impl<'a> Split<'a> {
-    /// Nothing yet.
+    /// An empty split.
     pub(super) fn new(lanes: &'a Lanes) -> Self {
         Self {
             lanes,
@@ -61,7 +61,7 @@ impl<'a> Split<'a> {
                     self.push(false, statement);
                 }
             }
-            // Columns go to their places behind all other statements.
+            // Columns are written to their places after all other statements.
             Statement::Place { .. } => {}
         }
     }
@@ -89,7 +89,7 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// A condition in all lanes.
+    /// A guard in all lanes.
     fn guard(&self, at: usize, value: &Expression, condition: &Condition) -> TokenStream {
         let value = self.own_writer.tokens(value);
         match condition {
@@ -112,7 +112,7 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// Whether an expression belongs to a leg.
+    /// Whether an expression depends on the leg.
     fn is_own(&self, expression: &Expression) -> bool {
         match expression {
             Expression::Number(_) | Expression::Constant { .. } | Expression::Broken(_) => false,
@@ -124,7 +124,7 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// Columns of the output in their places.
+    /// Writes columns to their places in the output.
     pub(super) fn columns(&self, places: &[Column], values: &[Expression]) -> Parts {
         let (mut of_all, mut of_legs) = (Vec::new(), Vec::new());
         let shape = &self.lanes.output.shape;
@@ -161,7 +161,7 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// A number of a row for each leg.
+    /// Writes a number of a row for each leg.
     fn of_legs(&self, row: &Literal, place: OfLegs, value: &Expression) -> TokenStream {
         let value = self.own_writer.tokens(value);
         let [first, stride, count] = [place.first, place.stride, place.count].map(unsuffixed);
@@ -176,7 +176,7 @@ impl<'a> Split<'a> {
     }
 }
 
-/// Whether a column of all legs is mostly not one vector: each leg has its columns side by side instead.
+/// Whether the legs' entries of a column are mostly not adjacent, but the columns of each leg are.
 fn are_scattered(places: &[Column]) -> bool {
     let of_legs = places.iter().filter_map(|place| match place {
         Column::OfLegs(place) => Some(place.stride != 1),
@@ -186,8 +186,10 @@ fn are_scattered(places: &[Column]) -> bool {
     apart.len() > side_by_side.len()
 }
 
-/// The output as a matrix of the function's own, which goes to its place at the end: compilers keep it in registers and
-/// write what stands side by side at once, where numbers that lie apart would be written one by one.
+/// The output as a local matrix, which is copied to its place at the end.
+///
+/// Compilers keep it in registers and write adjacent numbers at once, whereas numbers that are
+/// apart would be written one by one.
 fn local(shape: &[usize]) -> (TokenStream, TokenStream) {
     let (rows, columns) = (unsuffixed(shape[0]), unsuffixed(shape[1]));
     let begin = quote! {
@@ -197,7 +199,7 @@ fn local(shape: &[usize]) -> (TokenStream, TokenStream) {
     (begin, quote!(*place = output;))
 }
 
-/// Zeros where nothing else is written.
+/// Zeros in all places that nothing else writes.
 fn zeros(is_written: &[Vec<bool>]) -> TokenStream {
     let zero = Expression::Number(0.0);
     let writer = Writer::new(&[], Float::F64);
@@ -215,7 +217,7 @@ fn zeros(is_written: &[Vec<bool>]) -> TokenStream {
     quote!(#(#zeros)*)
 }
 
-/// Whether a value is zero whatever the inputs are.
+/// Whether a value is zero for all inputs.
 pub(super) fn is_zero(value: &Expression) -> bool {
     matches!(value, Expression::Number(zero) if *zero == 0.0)
 }

@@ -1,7 +1,7 @@
-//! What is added up over the legs, and what the sums are needed for.
+//! Sums over the legs, and the output from the sums.
 //!
-//! What a leg adds is kept for all legs until the loop is over, and added up then in an order that is the same however many
-//! lanes there are.
+//! Contributions of all legs are stored until the loop ends. Then they are summed in an order that
+//! does not depend on the number of lanes.
 
 use super::split::{Split, is_zero};
 use super::{Parts, places, rows as rows_of, unsuffixed};
@@ -31,7 +31,7 @@ pub(super) fn tables(sums: &Sums) -> Vec<(&'static str, &'static str)> {
     }
 }
 
-/// What stands around the statements of the legs of a function of sums.
+/// Statements around those of the legs, for a function of sums.
 pub(super) fn parts(
     model: &RobotModel,
     split: &Split<'_>,
@@ -98,8 +98,8 @@ pub(super) fn parts(
     }
 }
 
-/// Keeps what is not zero in a table that has a row for each number and a column for each leg; and where each number
-/// stands.
+/// Stores nonzero values in a table with a row for each number and a column for each leg; also
+/// returns the row of each number.
 fn kept(
     split: &Split<'_>,
     table: &str,
@@ -119,7 +119,7 @@ fn kept(
     (quote!(#(#statements)*), places)
 }
 
-/// What follows from the sums, as a block.
+/// The computation from the sums, as a block.
 fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream {
     let program = &sums.program;
     let body = Body::write(program, &Labels::of_robot(model), &|_| false);
@@ -139,7 +139,7 @@ fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream 
     }
 }
 
-/// A row times the solution, and the row's last number.
+/// The product of a row with the solution, plus the row's last number.
 fn along(row: &[Option<TokenStream>]) -> TokenStream {
     let Some((last, row)) = row.split_last() else {
         return quote!(0.0);

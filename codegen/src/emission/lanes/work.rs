@@ -1,5 +1,6 @@
-//! A function in lanes as work that runs in vectors chosen when it is called: a type that has its arrays, and runs in
-//! any vectors.
+//! A function in lanes as a type that contains its arrays and runs in any vectors.
+//!
+//! The vectors are chosen at run time, when the function is called.
 
 use super::{FEW, Loop};
 use crate::emission::expression::{array_type, ident};
@@ -9,16 +10,16 @@ use crate::model::CompiledFunction;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The function as a type, and its value.
+/// The function as a type, and the call.
 pub(in crate::emission) struct Work {
-    /// The type and what it does.
+    /// The type and its implementation.
     pub(in crate::emission) item: TokenStream,
-    /// The value of the type, run.
+    /// The value of a call.
     pub(in crate::emission) value: TokenStream,
 }
 
 impl Work {
-    /// Of a function that is written.
+    /// The type of a function in lanes.
     pub(in crate::emission) fn new(
         function: &CompiledFunction,
         lanes: &Lanes,
@@ -36,7 +37,7 @@ impl Work {
         let (statements, value) = (&written.statements, &written.value);
         let mut names: Vec<TokenStream> = names.into_iter().map(|name| quote!(#name)).collect();
         let mut kinds: Vec<TokenStream> = kinds.into_iter().map(|kind| quote!(&'a #kind)).collect();
-        // Columns go to their places, sums are given back.
+        // Columns are written to their places, sums are returned.
         let given = match &lanes.gathered {
             Gathered::Columns(_) => {
                 names.push(quote!(output));
@@ -70,7 +71,7 @@ impl Work {
     }
 }
 
-/// Whether an array of the function, shared by all legs or with elements of each, is used in the lanes.
+/// Whether the lanes use an array of the function, shared or with elements of each leg.
 fn is_used(lanes: &Lanes, name: &str) -> bool {
     let inputs = &lanes.program.inputs;
     let used = lanes.program.used_inputs();

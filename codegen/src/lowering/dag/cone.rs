@@ -1,10 +1,10 @@
-//! What a replacement saves.
+//! Operations saved by a replacement.
 
 use super::{Dag, Definition};
 use crate::cas::hasher::QuickSet;
 
 impl Dag {
-    /// Takes away one use of a node; what is no longer needed is let go with it. The operations let go.
+    /// Removes one use of a node, and nodes that become unused with it; returns their operations.
     pub(super) fn release(&mut self, node: usize) -> i32 {
         self.uses[node] -= 1;
         if self.uses[node] > 0 {
@@ -17,7 +17,7 @@ impl Dag {
         definition.operands().map(|o| self.release(o)).sum()
     }
 
-    /// Adds one use of a node; what was let go is needed again. The operations needed again.
+    /// Adds one use of a node, and restores nodes that it needs again; returns their operations.
     pub(crate) fn hold(&mut self, node: usize) -> i32 {
         self.uses[node] += 1;
         if self.uses[node] > 1 {
@@ -30,7 +30,7 @@ impl Dag {
         definition.operands().map(|o| self.hold(o)).sum()
     }
 
-    /// How many operations would go, its own included, if the node were there for nothing.
+    /// Operations, its own included, that would become unused if the node were free.
     pub(crate) fn cone(&mut self, node: usize) -> i32 {
         let definition = self.definitions[node];
         let released = self.release_operands(definition);
@@ -38,8 +38,7 @@ impl Dag {
         released + self.cost(node)
     }
 
-    /// How many operations the node's replacement would save; new nodes count where they are not used
-    /// yet.
+    /// Operations that a node's replacement would save; new nodes count if they are not used yet.
     pub(crate) fn saving(&mut self, node: usize, by: Definition) -> i32 {
         let definition = self.definitions[node];
         let before = self.cost(node) + self.release_operands(definition);
@@ -55,7 +54,7 @@ impl Dag {
         self.measure_depths();
     }
 
-    /// Replaces a node's definition; depths are the caller's business.
+    /// Replaces a node's definition; the caller updates depths.
     pub(crate) fn redefine(&mut self, node: usize, by: Definition) {
         let definition = self.definitions[node];
         let is_live = self.is_live(node);
@@ -68,15 +67,15 @@ impl Dag {
         }
     }
 
-    /// The longest way from an input to a definition.
+    /// Length of the longest path from an input to a definition.
     pub(super) fn depth_of(&self, definition: Definition) -> u32 {
         let deepest = definition.operands().map(|o| self.depths[o] + 1).max();
         deepest.unwrap_or(0)
     }
 
-    /// Whether one of some nodes is computed from another one, or is it.
+    /// Whether one of some nodes depends on another, or equals it.
     ///
-    /// Nodes that are no deeper than it are not.
+    /// Nodes that are not deeper do not depend on it.
     pub(crate) fn depend(&self, nodes: impl Iterator<Item = usize>, on: usize) -> bool {
         let depth = self.depths[on];
         let mut seen = QuickSet::default();
@@ -92,8 +91,8 @@ impl Dag {
         false
     }
 
-    /// Counts the depths anew after a replacement: a leaf's is zero, others are deeper than what they
-    /// are computed from.
+    /// Recomputes the depths after a replacement: zero for leaves, others greater than those of
+    /// their operands.
     pub(crate) fn measure_depths(&mut self) {
         let mut done = vec![false; self.len()];
         let mut stack = Vec::new();
@@ -113,7 +112,7 @@ impl Dag {
         }
     }
 
-    /// Whether a definition means the node, by the second point and the sample as well.
+    /// Whether a definition equals the node, also at the second point and at the sample.
     pub(crate) fn means(&self, definition: Definition, node: usize) -> bool {
         self.fingerprint_of(definition)
             .agrees(&self.fingerprints[node])

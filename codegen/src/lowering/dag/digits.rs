@@ -1,43 +1,45 @@
-//! What a replacement costs in digits.
+//! Loss of accuracy by a replacement.
 //!
-//! Forms that are equal may differ in their digits: a sum of large terms that gives a small value has
-//! lost the digits in which its terms agree. That matters most where a leg is nearly stretched and many
-//! values are small; the derivation's own forms do well there, as products of small factors do. So all
-//! nodes are evaluated at some states ([`test_states`](super::test_states)), exactly and with a random error after each
-//! operation (Monte Carlo arithmetic: D. S. Parker, 1997), which grows along the graph as rounding errors
-//! do. The error of a node as it would be written, with what it is computed from as that is written by
-//! now, may not be far larger than its error in the derivation's own form.
+//! Equivalent forms may differ in accuracy: a small sum of large terms has lost the digits in which
+//! the terms cancel. This matters most where a leg is nearly stretched and many values are small.
+//! The derivation's own forms are accurate there, as products of small factors are. So all nodes
+//! are evaluated at some states ([`test_states`](super::test_states)), exactly and with a random
+//! error after each operation (Monte Carlo arithmetic: D. S. Parker, 1997). The errors propagate
+//! through the graph as rounding errors do. The error of a node in a new form, with its operands in
+//! their current forms, must not be far larger than in the derivation's own form.
 
 use super::{Angle, Definition, Edge};
 use crate::cas::calculus::sign_of;
 
-/// The relative error after each operation: far more than a rounding, and small where it has grown by
-/// one over the distance.
+/// Relative error after each operation.
+///
+/// It is far larger than a rounding error, and still small when it has grown by one over the
+/// distance.
 pub(super) const NOISE: f64 = 1e-13;
 
 /// A state with the values of all nodes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {
-    /// What it has in common with others: regular, or nearly refused by the same guard.
+    /// Group of the state: regular, or nearly refused by the same guard.
     pub(super) group: usize,
-    /// Without errors.
+    /// Exact values.
     pub(super) values: Vec<f64>,
-    /// With errors, as the nodes are written.
+    /// Values with errors, in the nodes' current forms.
     pub(super) noisy: Vec<f64>,
-    /// One and the error of each node's operation.
+    /// One plus the error of each node's operation.
     pub(super) factors: Vec<f64>,
-    /// Squares of the errors of the derivation's own forms.
+    /// Squared errors of the derivation's own forms.
     pub(super) squares: Vec<f64>,
 }
 
-/// The states by which forms are compared.
+/// The states at which forms are compared.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Digits {
-    /// By group.
+    /// The states, sorted by group.
     states: Vec<State>,
 }
 
-/// What a definition evaluates to.
+/// Value of a definition.
 pub(crate) fn evaluate(definition: Definition, values: &[f64]) -> f64 {
     let value = |of: Edge| {
         let value = values[of.node()];
@@ -53,7 +55,7 @@ pub(crate) fn evaluate(definition: Definition, values: &[f64]) -> f64 {
         Definition::Selection(a, b) => value(a) * sign_of(value(b)),
         Definition::Cosine(Angle::Value(a)) => value(a).cos(),
         Definition::Sine(Angle::Value(a)) => value(a).sin(),
-        // What a leaf is depends on the state.
+        // The value of a leaf depends on the state.
         Definition::Constant(_)
         | Definition::Symbol(_)
         | Definition::Cosine(Angle::Unplanned(_))
@@ -62,14 +64,14 @@ pub(crate) fn evaluate(definition: Definition, values: &[f64]) -> f64 {
 }
 
 impl State {
-    /// The square of the error of a node's value, of a rounding at least; nothing if it is no number.
+    /// Squared error of a node's value, at least that of a rounding; zero for NaN.
     fn square(&self, node: usize, noisy: f64) -> f64 {
         let value = self.values[node];
         let error = (noisy - value).powi(2) + (NOISE * value).powi(2);
         if error.is_finite() { error } else { 0.0 }
     }
 
-    /// One more node.
+    /// Appends a node.
     fn push(&mut self, definition: Definition) {
         let node = self.values.len();
         self.values.push(evaluate(definition, &self.values));
@@ -88,7 +90,7 @@ impl State {
 }
 
 impl Digits {
-    /// Forms are compared at these states, whose errors are not known yet.
+    /// States for the comparison of forms, whose errors are not known yet.
     pub(super) fn new(mut states: Vec<State>) -> Self {
         for state in &mut states {
             let nodes = 0..state.values.len();
@@ -99,8 +101,7 @@ impl Digits {
         Self { states }
     }
 
-    /// How much larger than a node's own error that of a form is, in root mean square over the states of
-    /// the group where that is worst.
+    /// Ratio of a form's error to a node's own, in root mean square over the worst group of states.
     pub(super) fn loss(&self, by: Definition, node: usize) -> f64 {
         let groups = self.states.chunk_by(|a, b| a.group == b.group);
         let loss = |states: &[State]| {
@@ -110,13 +111,13 @@ impl Digits {
                 state.square(node, noisy)
             };
             let other: f64 = states.iter().map(other).sum();
-            // Where nothing is known, nothing is lost.
+            // Without known errors the loss is one.
             if own > 0.0 { (other / own).sqrt() } else { 1.0 }
         };
         groups.map(loss).fold(0.0, f64::max)
     }
 
-    /// Takes a node's errors from what it is computed from, as that is written by now.
+    /// Updates a node's errors from the current forms of its operands.
     pub(super) fn refresh(&mut self, node: usize, definition: Definition) {
         if definition.is_leaf() {
             return;
@@ -126,14 +127,14 @@ impl Digits {
         }
     }
 
-    /// A new node.
+    /// Appends a node.
     pub(super) fn push(&mut self, definition: Definition) {
         for state in &mut self.states {
             state.push(definition);
         }
     }
 
-    /// The last node is taken away.
+    /// Removes the last node.
     pub(super) fn pop(&mut self) {
         for state in &mut self.states {
             state.pop();

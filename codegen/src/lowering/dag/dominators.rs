@@ -1,21 +1,22 @@
-//! Which nodes only one node needs.
+//! Dominator tree of the live nodes.
 //!
-//! A node *dominates* another if every way from an entry to it leads through the first: without the
-//! first, nothing would need it. The nodes form a tree in which each stands below those that dominate it,
-//! so the operations that go with a node, its maximal fan-out free cone, are those of its branch.
+//! A node *dominates* another if every path from an entry to the other leads through it: without
+//! it, the other would be unused. The nodes form a tree in which each node is a descendant of those
+//! that dominate it. So the operations that are removed with a node, its maximal fan-out free cone,
+//! are those of its branch.
 
 use super::Dag;
 
-/// A node that several need, or an entry.
+/// Parent of a node that several nodes need, or of an entry.
 const ROOT: u32 = u32::MAX;
 
-/// The tree of a graph's live nodes.
+/// The dominator tree of a graph's live nodes.
 pub(crate) struct Dominators {
     /// Operations of each node's branch.
     cones: Vec<i32>,
-    /// The node's place in an order in which every branch is one range.
+    /// Position of each node in an order in which every branch is one range.
     first: Vec<u32>,
-    /// The end of its branch.
+    /// End of each node's branch.
     end: Vec<u32>,
 }
 
@@ -23,7 +24,7 @@ impl Dominators {
     pub(crate) fn new(dag: &Dag) -> Self {
         let count = dag.len();
         let mut order: Vec<usize> = (0..count).filter(|&n| dag.is_live(n)).collect();
-        // What is computed from a node is deeper than the node, and so comes first.
+        // A node's users are deeper than the node, and so come first.
         order.sort_by_key(|&node| std::cmp::Reverse(dag.depths[node]));
         let parents = parents(dag, &order);
         let mut cones = vec![0; count];
@@ -46,7 +47,7 @@ impl Dominators {
         tree
     }
 
-    /// Gives each branch a range: a node's comes at the front of what its parent's has left.
+    /// Assigns a range to each branch: a node's is at the front of what remains of its parent's.
     fn arrange(&mut self, order: &[usize], parents: &[u32], sizes: &[u32]) {
         let mut free = vec![0; sizes.len()];
         let mut outside = 0;
@@ -63,27 +64,29 @@ impl Dominators {
         }
     }
 
-    /// How many operations would go, its own included, if the node were there for nothing.
+    /// Operations, its own included, that would become unused if the node were free.
     pub(crate) fn cone(&self, node: usize) -> i32 {
         self.cones[node]
     }
 
-    /// Operations of `of`'s cone that stay if `kept` is needed by others, too: those of its own cone. What
-    /// it has in common with other nodes of `of`'s cone would stay as well.
+    /// Operations of `of`'s cone that stay if other nodes need `kept`: those of the cone of `kept`.
+    ///
+    /// Nodes that `kept` shares with others in `of`'s cone would stay as well, but are not counted.
     pub(crate) fn shared(&self, of: usize, kept: usize) -> i32 {
         let is_below = (self.first[of]..self.end[of]).contains(&self.first[kept]);
         if is_below { self.cones[kept] } else { 0 }
     }
 }
 
-/// Each node's parent in the tree: the nearest node that all its users have in common. `order` has users
-/// first.
+/// Parent of each node in the tree: the nearest common dominator of its users.
+///
+/// `order` lists users first.
 fn parents(dag: &Dag, order: &[usize]) -> Vec<u32> {
     let mut parents = vec![ROOT; dag.len()];
     let mut levels = vec![0_u32; dag.len()];
     let mut seen = vec![0_u32; dag.len()];
     for &user in order {
-        // The node's own users have all come before: its parent is known by now, unless an entry needs it.
+        // All users of the node precede it, so its parent is known here, unless an entry needs it.
         if seen[user] < dag.uses[user] {
             parents[user] = ROOT;
         }
@@ -102,7 +105,7 @@ fn parents(dag: &Dag, order: &[usize]) -> Vec<u32> {
     parents
 }
 
-/// The nearest node above two nodes, or one of them.
+/// The nearest common ancestor of two nodes, or one of them.
 fn common(parents: &[u32], levels: &[u32], mut a: u32, mut b: u32) -> u32 {
     let level = |node: u32| match node {
         ROOT => 0,

@@ -1,14 +1,14 @@
-//! Which sums, products and quotients of two nodes have a node's value.
+//! Sums, products and quotients of two nodes that equal a node.
 
 use super::candidate_prefilter::CandidatePrefilter;
 use super::{Dag, Definition, Edge};
 use crate::cas::field::Element;
 use crate::cas::hasher::QuickMap;
 
-/// The sums and products of two nodes that have the value of a node, of the nodes that were looked at.
+/// Sums and products of two nodes that equal a node, for the nodes examined so far.
 ///
-/// Single replacements add no node and bring none back, so what was found once is all there is: only
-/// less of it may be alive later. Whoever adds nodes or brings some back lets it be found anew.
+/// Single replacements neither add nor restore nodes, so the forms found once stay complete; some
+/// may become unused. Code that adds or restores nodes has to invalidate them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Forms(Option<Found>);
 
@@ -29,7 +29,7 @@ impl Found {
         }
     }
 
-    /// All sums and products of two live nodes that have the node's value.
+    /// All sums and products of two live nodes that equal the node.
     fn pairs(&self, dag: &Dag, node: usize) -> Vec<Definition> {
         let target = dag.value(Edge::to(node));
         let mut found = Vec::new();
@@ -54,7 +54,7 @@ impl Found {
     }
 }
 
-/// All quotients of a live node by a divisor that have the node's value.
+/// All quotients of a live node by a divisor that equal the node.
 fn quotients(dag: &Dag, node: usize, divisors: &[usize]) -> Vec<Definition> {
     let target = dag.value(Edge::to(node));
     let quotient = |&divisor: &usize| {
@@ -67,7 +67,7 @@ fn quotients(dag: &Dag, node: usize, divisors: &[usize]) -> Vec<Definition> {
 }
 
 impl Dag {
-    /// All sums, products and quotients of live nodes that seem to have a node's value, of two others.
+    /// All sums, products and quotients of two live nodes that probably equal a node.
     pub(crate) fn forms(&mut self, node: usize, divisors: &[usize]) -> Vec<Definition> {
         let mut found = self.forms.0.take().unwrap_or_else(|| Found::new(self));
         if !found.pairs.contains_key(&node) {
@@ -82,12 +82,12 @@ impl Dag {
         forms
     }
 
-    /// Forms are to be found anew.
+    /// Invalidates the forms.
     pub(crate) fn forget_forms(&mut self) {
         self.forms = Forms::default();
     }
 
-    /// A copy to come back to, without what is known of forms.
+    /// A copy for [`restore`](Self::restore), without cached forms.
     pub(crate) fn snapshot(&mut self) -> Self {
         let forms = std::mem::take(&mut self.forms);
         let copy = self.clone();
@@ -95,7 +95,7 @@ impl Dag {
         copy
     }
 
-    /// Goes back to a copy. Forms are found anew only if nodes have been added since.
+    /// Restores a copy. Forms are invalidated only if nodes have been added since.
     pub(crate) fn restore(&mut self, copy: Self) {
         let had_more_nodes = self.len() > copy.len();
         let forms = std::mem::take(&mut self.forms);

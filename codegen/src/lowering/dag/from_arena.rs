@@ -6,7 +6,7 @@ use crate::cas::hasher::QuickMap;
 use crate::cas::{Arena, Expr};
 use crate::lowering::GuardedExpr;
 
-/// The DAG of some entries. Guards whose value no entry needs are left out, but for those on the pose itself.
+/// The DAG of some entries, without guards whose value no entry needs; guards on the pose are kept.
 pub(crate) fn from_arena<'a>(
     arena: &'a Arena,
     entries: &[Expr<'a>],
@@ -32,16 +32,16 @@ pub(crate) fn from_arena<'a>(
     copy.dag
 }
 
-/// A DAG that grows from an arena.
+/// A DAG under construction from an arena.
 pub(crate) struct Copy<'a> {
     arena: &'a Arena,
     pub(crate) dag: Dag,
-    /// The node of each node of the arena.
+    /// The DAG node of each arena node.
     numbers: QuickMap<usize, usize>,
 }
 
 impl<'a> Copy<'a> {
-    /// Nothing of the arena but its symbols and angles.
+    /// An empty copy with the arena's symbols and angles.
     pub(crate) fn new(arena: &'a Arena) -> Self {
         let symbol = |id| Symbol {
             element: arena.input_element(id),
@@ -66,7 +66,7 @@ impl<'a> Copy<'a> {
         }
     }
 
-    /// The edge that a handle of the arena is.
+    /// The edge of an arena handle.
     pub(crate) fn edge(&mut self, handle: Handle) -> Edge {
         Edge::new(self.node(handle.index()), handle.is_negative())
     }

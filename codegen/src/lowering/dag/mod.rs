@@ -1,11 +1,10 @@
-//! The one form of a function between its expressions and its program: a directed acyclic graph of signed
-//! nodes.
+//! The representation between expressions and program: a directed acyclic graph of signed nodes.
 //!
-//! Each node has a definition, a fingerprint (its values at random points of the field, see
-//! [`cas`](crate::cas)) by which it is found, and an origin: the name that the derivation gave it and the
-//! heading under which it stands. Negation costs nothing and is a bit of the edge to a node. How a node is
-//! computed may change as long as its fingerprint stays. The arena, in which expressions are built, ends
-//! in [`from_arena`]: nothing after it sees it.
+//! Each node has a definition, a fingerprint and an origin. The fingerprint, its values at random
+//! points of the field (see [`cas`](crate::cas)), is the key for lookups. The origin is the name
+//! from the derivation and the heading. Negation is a bit of the edge to a node and costs nothing.
+//! The definition of a node may change as long as its fingerprint stays. [`from_arena`] is the last
+//! user of the arena.
 
 mod candidate_prefilter;
 mod cone;
@@ -29,18 +28,18 @@ use digits::Digits;
 use forms::Forms;
 use std::sync::Arc;
 
-/// What a root and an arc tangent count, so that they are saved first.
+/// Cost of a root or arc tangent, so that these are saved first.
 const EXPENSIVE: i32 = 10;
 
 /// A symbol of the derivation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Symbol {
-    /// What it stands for; none for an unknown, which no function is computed from.
+    /// The input element that it represents; `None` for an unknown, which no function uses.
     pub(crate) element: Option<InputElement>,
     pub(crate) fingerprint: Fingerprint,
 }
 
-/// An angle of which sine or cosine is taken.
+/// An angle whose sine or cosine is used.
 #[derive(Debug, Clone)]
 pub(crate) struct Turn {
     pub(crate) direction: Direction,
@@ -55,7 +54,7 @@ pub(crate) struct GuardedEdge {
     pub(crate) condition: Condition,
 }
 
-/// What stays as it is, however nodes are written.
+/// Data that do not depend on the forms of nodes.
 #[derive(Debug, Default)]
 pub(crate) struct Context {
     pub(crate) symbols: Vec<Symbol>,
@@ -64,7 +63,7 @@ pub(crate) struct Context {
     pub(crate) scopes: Vec<String>,
 }
 
-/// A node as it is added.
+/// Name and heading of a node that is added.
 #[derive(Debug)]
 pub(crate) struct Origin {
     pub(crate) name: Option<Arc<str>>,
@@ -79,29 +78,33 @@ pub(crate) struct Dag {
     names: Vec<Option<Arc<str>>>,
     /// Heading of each node.
     scopes: Vec<u32>,
-    /// How often each node is used: by other nodes that are used, by the entries and by guards.
+    /// Number of uses of each node by used nodes, entries and guards.
     uses: Vec<u32>,
-    /// Longest way from an input to each node.
+    /// Length of the longest path from an input to each node.
     depths: Vec<u32>,
     /// Node of each value: that of a node or of its negative.
     by_value: ByValue<Edge>,
-    /// The derivation's definition of each node; new ones have none.
+    /// The derivation's definition of each node; `None` for new ones.
     own_forms: Vec<Option<Definition>>,
-    /// Nodes that are written as the derivation has them for good.
+    /// Nodes that keep the derivation's form permanently.
     is_kept: Vec<bool>,
     /// The function's numbers, row-major.
     entries: Vec<Edge>,
-    /// Held like entries: a guard's value stays as long as something is divided by it or its root is
-    /// taken, and keeps its own node, which means something to the reader.
+    /// Guards, which hold their nodes like entries.
+    ///
+    /// A guard stays as long as its value is a divisor or a radicand. It keeps its own node, which
+    /// has a meaning for readers.
     guards: Vec<GuardedEdge>,
-    /// Nodes that are computed one after the other, such as an angle's cosine and sine; each stands in one
-    /// group at most.
+    /// Nodes that are computed in succession, such as an angle's cosine and sine.
+    ///
+    /// Each belongs to one group at most.
     together: Vec<Vec<usize>>,
-    /// What replacements are held against.
+    /// Accuracy data by which replacements are judged.
     digits: Digits,
-    /// What the search of single replacements knows of the nodes.
+    /// Cache of the search for single replacements.
     forms: Forms,
-    /// In how many pieces pairs have been searched, if headings were too large to be searched as a whole.
+    /// Number of pieces of the search for pairs, if headings were too large for a search as a
+    /// whole.
     pieces: usize,
     context: Arc<Context>,
 }
@@ -118,7 +121,7 @@ impl Dag {
         Arc::clone(&self.context)
     }
 
-    /// Adds a node of the derivation, which nothing uses yet.
+    /// Adds a node of the derivation, which has no use yet.
     pub(crate) fn push(
         &mut self,
         definition: Definition,
@@ -141,7 +144,7 @@ impl Dag {
         node
     }
 
-    /// Adds a node of the optimiser's own, which nothing uses yet.
+    /// Adds a node of the optimiser, which has no use yet.
     pub(crate) fn add(&mut self, definition: Definition, scope: u32) -> usize {
         let fingerprint = self.fingerprint_of(definition);
         let node = self.push(definition, fingerprint, Origin { name: None, scope });
@@ -155,7 +158,7 @@ impl Dag {
         node
     }
 
-    /// Takes the last node away again, which nothing uses.
+    /// Removes the last node, which has no use.
     pub(crate) fn remove_last(&mut self) {
         let last = self.len() - 1;
         let ([key], _) = canonical([self.fingerprints[last].value()]);
@@ -174,25 +177,25 @@ impl Dag {
         self.digits.pop();
     }
 
-    /// Makes a node one of the function's numbers.
+    /// Appends a node to the function's output.
     pub(crate) fn push_entry(&mut self, entry: Edge) {
         self.hold(entry.node());
         self.entries.push(entry);
     }
 
-    /// Puts a condition on a node.
+    /// Adds a guard on a node.
     pub(crate) fn push_guard(&mut self, guard: GuardedEdge) {
         self.hold(guard.value.node());
         self.guards.push(guard);
     }
 
-    /// Puts a condition on a node before a guard that is there, as errors are told in the guards' order.
+    /// Inserts a guard before an existing one; errors are reported in the order of the guards.
     pub(crate) fn insert_guard(&mut self, at: usize, guard: GuardedEdge) {
         self.hold(guard.value.node());
         self.guards.insert(at, guard);
     }
 
-    /// Lets guards go.
+    /// Removes guards.
     pub(crate) fn retain_guards(&mut self, is_kept: impl Fn(&GuardedEdge) -> bool) {
         let guards = std::mem::take(&mut self.guards);
         let (kept, gone): (Vec<_>, Vec<_>) = guards.into_iter().partition(is_kept);
@@ -202,15 +205,16 @@ impl Dag {
         }
     }
 
-    /// Lets nodes be computed one after the other, but those that belong to an earlier group: in two groups
-    /// they would be computed with the second while the first is not done.
+    /// Groups nodes that are computed in succession, except for nodes of an earlier group.
+    ///
+    /// A node in two groups would be computed with the second while the first is unfinished.
     pub(crate) fn compute_together(&mut self, nodes: &[usize]) {
         let is_new = |node: &usize| !self.together.iter().flatten().any(|known| known == node);
         let group = nodes.iter().copied().filter(is_new).collect();
         self.together.push(group);
     }
 
-    /// The groups of nodes that are computed one after the other.
+    /// The groups of nodes that are computed in succession.
     pub(crate) fn groups(&self) -> &[Vec<usize>] {
         &self.together
     }
@@ -251,7 +255,7 @@ impl Dag {
         nodes
     }
 
-    /// Some nodes and all that they are computed from.
+    /// Some nodes and all their operands, transitively.
     pub(crate) fn needed(&self, nodes: impl Iterator<Item = usize>) -> Vec<bool> {
         let mut needed = vec![false; self.len()];
         let mut stack: Vec<usize> = nodes.collect();
@@ -263,12 +267,12 @@ impl Dag {
         needed
     }
 
-    /// Pairs have been searched in so many pieces.
+    /// Records the number of pieces in which pairs were searched.
     pub(crate) fn note_pieces(&mut self, pieces: usize) {
         self.pieces = self.pieces.max(pieces);
     }
 
-    /// In how many pieces pairs have been searched; none if as a whole, or heading by heading.
+    /// Number of pieces in which pairs were searched; zero if as a whole or heading by heading.
     pub(crate) const fn pieces(&self) -> usize {
         self.pieces
     }
@@ -278,30 +282,30 @@ impl Dag {
         self.uses[node] > 0
     }
 
-    /// Whether the node is needed and may be written in another way.
+    /// Whether the node is needed and may get another form.
     pub(crate) fn is_open(&self, node: usize) -> bool {
         self.is_live(node) && !self.is_kept[node] && self.definitions[node].is_open()
     }
 
-    /// Whether the node is written as the derivation has it for good.
+    /// Makes the node keep the derivation's form permanently.
     pub(crate) fn keep_own_form(&mut self, node: usize) {
         self.is_kept[node] = true;
     }
 
-    /// What all nodes count.
+    /// Total cost of all nodes.
     pub(crate) fn total(&self) -> i32 {
         let live = (0..self.len()).filter(|&node| self.is_live(node));
         live.map(|node| self.cost(node)).sum()
     }
 
-    /// The live node, with its sign, of a value.
+    /// The live node of a value, with its sign.
     pub(crate) fn find(&self, value: Element) -> Option<Edge> {
         let ([key], negative) = canonical([value]);
         let found = self.by_value.get(&key)?.times(negative);
         self.is_live(found.node()).then_some(found)
     }
 
-    /// What nodes are looked up by.
+    /// The key by which nodes are looked up.
     pub(crate) fn value(&self, of: Edge) -> Element {
         let value = self.fingerprints[of.node()].value();
         if of.is_negative() { -value } else { value }
@@ -329,7 +333,7 @@ impl Dag {
         order
     }
 
-    /// What a definition evaluates to at the points of the field.
+    /// Values of a definition at the points of the field.
     pub(crate) fn fingerprint_of(&self, definition: Definition) -> Fingerprint {
         let of = |edge| self.fingerprint(edge);
         match definition {
@@ -339,7 +343,7 @@ impl Dag {
             Definition::Symbol(symbol) => self.context.symbols[symbol as usize].fingerprint,
             Definition::Cosine(Angle::Unplanned(turn)) => self.context.turns[turn as usize].cosine,
             Definition::Sine(Angle::Unplanned(turn)) => self.context.turns[turn as usize].sine,
-            // How the field sees an angle does not follow from how it sees the angle's value.
+            // An angle's representation in the field does not follow from that of its value.
             Definition::Cosine(Angle::Value(angle)) => of(angle).cosine(),
             Definition::Sine(Angle::Value(angle)) => of(angle).sine(),
             Definition::Sum(a, b) => of(a) + of(b),
@@ -352,12 +356,12 @@ impl Dag {
         }
     }
 
-    /// What the node's own operation counts.
+    /// Cost of the node's own operation.
     pub(crate) fn cost(&self, node: usize) -> i32 {
         self.cost_of(self.definitions[node])
     }
 
-    /// What an operation counts: one, also for a product with a sign.
+    /// Cost of an operation: one, also for a product with a sign.
     pub(crate) const fn cost_of(&self, definition: Definition) -> i32 {
         match definition {
             Definition::Root(_) | Definition::ArcTangent(..) => EXPENSIVE,
@@ -369,13 +373,13 @@ impl Dag {
         }
     }
 
-    /// The derivation's form of a node that is written in another way.
+    /// The derivation's form of a node that has another form.
     pub(crate) fn own_form(&self, node: usize) -> Option<Definition> {
         let own = self.own_forms[node]?;
         (own != self.definitions[node]).then_some(own)
     }
 
-    /// The nodes that quotients are divided by: each is guarded, or never zero.
+    /// Valid divisors of quotients: guarded or never zero.
     pub(crate) fn divisors(&self) -> Vec<usize> {
         let mut divisors: Vec<usize> = (0..self.len())
             .filter(|&n| self.is_live(n))
@@ -389,7 +393,7 @@ impl Dag {
         divisors
     }
 
-    /// A node that computes a definition: one that is there among `known`, or a new one.
+    /// A node of a definition: an existing one among `known`, or a new one.
     pub(crate) fn node_of(
         &mut self,
         definition: Definition,
@@ -400,7 +404,7 @@ impl Dag {
             .or_insert_with(|| self.add(definition, 0))
     }
 
-    /// Names those nodes that have no name after their value.
+    /// Names nodes without a name by their value.
     pub(crate) fn name_values(&mut self, name_of: impl Fn(&Fingerprint) -> Option<String>) {
         for (name, fingerprint) in self.names.iter_mut().zip(&self.fingerprints) {
             if name.is_none() {
@@ -409,8 +413,8 @@ impl Dag {
         }
     }
 
-    /// Lets every node be its own negative where `is_flipped` says so, whoever uses it. Definitions are the
-    /// caller's business.
+    /// Negates every node for which `is_flipped` holds, and its uses. The caller changes
+    /// definitions.
     pub(crate) fn flip(&mut self, is_flipped: &[bool]) {
         for (node, _) in is_flipped
             .iter()
@@ -429,27 +433,27 @@ impl Dag {
             .for_each(|guard| flip(&mut guard.value));
     }
 
-    /// States at which the digits of forms are compared.
+    /// Sets the states at which the accuracy of forms is compared.
     pub(crate) fn measure_digits(&mut self, states: &test_states::States<'_>) {
         self.digits = Digits::new(test_states::states(self, states));
     }
 
-    /// From here on digits are compared no more.
+    /// Ends the comparison of accuracy.
     pub(crate) fn forget_digits(&mut self) {
         self.digits = Digits::default();
     }
 
-    /// How much larger than a node's own error that of a form is.
+    /// Ratio of a form's error to a node's own.
     pub(crate) fn loss(&self, by: Definition, node: usize) -> f64 {
         self.digits.loss(by, node)
     }
 
-    /// Takes a node's errors from what it is computed from, as that is written by now.
+    /// Updates a node's errors from the current forms of its operands.
     pub(crate) fn refresh(&mut self, node: usize) {
         self.digits.refresh(node, self.definitions[node]);
     }
 
-    /// The errors of all nodes, as they are written by now.
+    /// Updates the errors of all nodes in their current forms.
     pub(crate) fn refresh_all(&mut self) {
         for node in self.operands_first() {
             self.refresh(node);

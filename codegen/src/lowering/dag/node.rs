@@ -1,6 +1,6 @@
 //! Nodes of the DAG and the edges to them.
 
-/// An edge to a node, perhaps to its negative: twice the node's number, plus one for the negative.
+/// An edge to a node or its negative: twice the node's index, plus one for the negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Edge(u32);
 
@@ -32,7 +32,7 @@ impl Edge {
     }
 }
 
-/// A constant by its bits, so that equal constants are the same key.
+/// A constant by its bits, so that equal constants have equal keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Constant(u64);
 
@@ -46,21 +46,21 @@ impl Constant {
     }
 }
 
-/// What a sine or cosine is taken of.
+/// Argument of a sine or cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Angle {
-    /// The direction of this number, of which it is not decided yet how its sine and cosine are had.
+    /// The direction of this index, whose evaluation is not planned yet.
     Unplanned(u32),
     /// A node's value, in radians.
     Value(Edge),
 }
 
-/// How a node is computed.
+/// Definition of a node: how it is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Definition {
     /// A number.
     Constant(Constant),
-    /// The symbol of this number, an element of an input array.
+    /// The symbol of this index, an element of an input array.
     Symbol(u32),
     /// Cosine of an angle.
     Cosine(Angle),
@@ -72,7 +72,7 @@ pub(crate) enum Definition {
     Product(Edge, Edge),
     /// a / b.
     Quotient(Edge, Edge),
-    /// √a, never written in another way, as the following.
+    /// √a. This and the following variants never get another form.
     Root(Edge),
     /// The sign of a.
     Sign(Edge),
@@ -83,7 +83,7 @@ pub(crate) enum Definition {
 }
 
 impl Definition {
-    /// The edges to what it is computed from.
+    /// The edges to the operands.
     pub(crate) fn edges(self) -> impl Iterator<Item = Edge> {
         let (first, second) = match self {
             Self::Constant(_)
@@ -103,7 +103,7 @@ impl Definition {
         first.into_iter().chain(second)
     }
 
-    /// The nodes that it is computed from.
+    /// The operand nodes.
     pub(crate) fn operands(self) -> impl Iterator<Item = usize> {
         self.edges().map(Edge::node)
     }
@@ -127,7 +127,7 @@ impl Definition {
         }
     }
 
-    /// Whether it is given and not computed: an input, a constant, a sine or cosine not planned yet.
+    /// Whether it is a leaf: an input, a constant, or a sine or cosine that is not planned yet.
     pub(crate) const fn is_leaf(self) -> bool {
         matches!(
             self,
@@ -138,7 +138,7 @@ impl Definition {
         )
     }
 
-    /// Whether it may be written in another way.
+    /// Whether the node may get another form.
     pub(crate) const fn is_open(self) -> bool {
         matches!(self, Self::Sum(..) | Self::Product(..) | Self::Quotient(..))
     }

@@ -1,8 +1,8 @@
-//! States at which forms are compared.
+//! States at which forms of nodes are compared.
 //!
-//! Some are given: regular ones whose joints close the legs. The others are on rays that go from the home
-//! configuration in random directions of the inputs. Where a guard refuses the first state of a ray, a leg
-//! is singular; the state just before it is taken.
+//! Some are given: regular states whose joints close the legs. The others are on rays from the home
+//! configuration in random directions of the inputs. If a guard refuses the first state of a ray, a
+//! leg is singular; the state just before it is used.
 
 use super::digits::{NOISE, State, evaluate};
 use super::{Angle, Dag, Definition, Edge};
@@ -10,35 +10,35 @@ use crate::cas::calculus::angle_of;
 use crate::cas::direction::Direction;
 use crate::cas::{InputElement, Stream, SymbolId};
 
-/// Rays from the home configuration.
+/// Number of rays from the home configuration.
 const RAYS: usize = 24;
 
-/// The distance of a state from where its ray ends, relative to the ray's length.
+/// Distance of a state from the end of its ray, relative to the ray's length.
 const DISTANCE: f64 = 1e-8;
 
 /// The first step of a ray, m and rad.
 const STEP: f64 = 1e-3;
 
-/// How much longer than the last one each step is.
+/// Ratio of successive steps.
 const GROWTH: f64 = 1.4;
 
-/// Steps of a ray at most: it is then some thirty metres long.
+/// Largest number of steps of a ray, which is then about thirty metres long.
 const STEPS: usize = 28;
 
-/// Bisections of the last step, down to the last digit.
+/// Bisections of the last step, to machine precision.
 const BISECTIONS: usize = 52;
 
-/// Where the values of a function's inputs are known, by element.
+/// Known values of a function's inputs, by element.
 pub struct States<'s> {
-    /// In the home configuration; `None` for rates.
+    /// Values in the home configuration; `None` for rates.
     pub home: &'s dyn Fn(InputElement) -> Option<f64>,
-    /// How many regular states each group of them has.
+    /// Number of regular states in each group.
     pub groups: &'s [usize],
-    /// In one of them, by group and number.
+    /// Value in a regular state, by group and number.
     pub regular: &'s dyn Fn(usize, usize, InputElement) -> Option<f64>,
 }
 
-/// All nodes at the states, of a graph that has no nodes of the optimiser's own yet.
+/// Values of all nodes at the states, for a graph without nodes of the optimiser.
 pub(super) fn states(dag: &Dag, known: &States<'_>) -> Vec<State> {
     // Values that vanish at every pose of the robot have no sign.
     let guards = dag
@@ -74,10 +74,10 @@ pub(super) fn states(dag: &Dag, known: &States<'_>) -> Vec<State> {
     states
 }
 
-/// A way through the states.
+/// A ray of states.
 struct Ray<'d> {
     dag: &'d Dag,
-    /// All nodes, of which those that are no leaves are to be evaluated.
+    /// All nodes; those that are not leaves are evaluated.
     leaves: Vec<Leaf>,
 }
 
@@ -91,7 +91,7 @@ enum Leaf {
     None,
 }
 
-/// A number that grows evenly with the distance.
+/// A number that is linear in the distance.
 struct Line {
     start: f64,
     slope: f64,
@@ -104,7 +104,7 @@ impl Line {
 }
 
 impl<'d> Ray<'d> {
-    /// `from` gives a symbol's start and slope, for a random number.
+    /// A ray; `from` gives a symbol's start and slope from a random number.
     fn new(
         dag: &'d Dag,
         from: &dyn Fn(Option<InputElement>, f64) -> (f64, f64),
@@ -135,7 +135,7 @@ impl<'d> Ray<'d> {
         }
     }
 
-    /// The value of a node at a distance from home, the nodes before it being known.
+    /// Value of a node at a distance from home, from those of earlier nodes.
     fn value(&self, node: usize, distance: f64, values: &[f64]) -> f64 {
         match &self.leaves[node] {
             Leaf::Number(line) => line.at(distance),
@@ -145,7 +145,8 @@ impl<'d> Ray<'d> {
         }
     }
 
-    /// Where the first guard fails on the way, and which. `needed` are the nodes that guards need.
+    /// Distance at which the first guard fails, and its index. `needed` are the nodes that guards
+    /// need.
     fn end(&self, needed: &[usize], guards: &[Edge]) -> Option<(f64, usize)> {
         let mut values = vec![0.0; self.dag.len()];
         let mut signs = |distance: f64| -> Vec<f64> {
@@ -159,7 +160,7 @@ impl<'d> Ray<'d> {
             return None;
         }
         let home = signs(0.0);
-        // No number is no sign either.
+        // NaN counts as a failure, too.
         let mut fails = |distance: f64| {
             let there = signs(distance);
             (0..guards.len()).find(|&guard| there[guard] != home[guard])
@@ -208,7 +209,7 @@ impl<'d> Ray<'d> {
     }
 }
 
-/// How fast an angle grows along a ray, if its symbols do as `slope` says.
+/// Slope of an angle along a ray, from those of its symbols.
 fn slope_of(direction: &Direction, slope: &dyn Fn(SymbolId) -> f64) -> f64 {
     let terms = direction.terms().iter();
     terms.fold(0.0, |sum, (symbol, factor)| {

@@ -1,4 +1,4 @@
-//! What holds of a DAG between two passes.
+//! Invariants of a DAG between two passes.
 
 use super::{Constant, Dag, Definition, Edge};
 
@@ -6,7 +6,7 @@ impl Dag {
     /// Checks the invariants that every pass keeps.
     ///
     /// # Errors
-    /// The first one that is broken, in words.
+    /// Describes the first violated invariant.
     pub(crate) fn verify(&self) -> Result<(), String> {
         self.verify_edges()?;
         self.verify_order()?;
@@ -15,7 +15,7 @@ impl Dag {
         self.verify_values()
     }
 
-    /// Every edge leads to a node.
+    /// Every edge leads to an existing node.
     fn verify_edges(&self) -> Result<(), String> {
         let guards = self.guards.iter().map(|guard| guard.value);
         let definitions = self.definitions.iter().flat_map(|d| d.edges());
@@ -34,7 +34,7 @@ impl Dag {
         }
     }
 
-    /// No node is computed from itself: each is deeper than its operands.
+    /// No node depends on itself: each is deeper than its operands.
     fn verify_order(&self) -> Result<(), String> {
         for node in (0..self.len()).filter(|&node| self.is_live(node)) {
             let mut operands = self.definitions[node].operands();
@@ -47,7 +47,7 @@ impl Dag {
         Ok(())
     }
 
-    /// Nodes are counted as used exactly as often as entries, guards and used nodes use them.
+    /// Use counts equal the uses by entries, guards and used nodes.
     fn verify_uses(&self) -> Result<(), String> {
         let guards = self.guards.iter().map(|guard| guard.value);
         let held: Vec<Edge> = self.entries.iter().copied().chain(guards).collect();
@@ -66,7 +66,7 @@ impl Dag {
         }
     }
 
-    /// A node is computed with one group of nodes at most.
+    /// Each node belongs to one group at most.
     fn verify_groups(&self) -> Result<(), String> {
         let mut seen = vec![false; self.len()];
         let mut nodes = self.together.iter().flatten();
@@ -76,7 +76,7 @@ impl Dag {
         }
     }
 
-    /// What is written has the value that it stands for, and is a number.
+    /// Every definition is a number and has the value of its node.
     fn verify_values(&self) -> Result<(), String> {
         for node in (0..self.len()).filter(|&node| self.is_live(node)) {
             let definition = self.definitions[node];

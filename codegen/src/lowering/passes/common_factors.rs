@@ -1,15 +1,15 @@
-//! Products in a sum that have a factor in common: a x + b + c x is (a + c) x + b.
+//! Common factors across the terms of a sum: a x + b + c x becomes (a + c) x + b.
 //!
-//! The search of single nodes and of pairs sees a sum as the derivation has associated it. Here it is taken apart
-//! down to terms that something else needs, too, or that are no sums; what two of its products share is multiplied
-//! once, and often several sums then need the same a + c.
+//! The searches for single nodes and pairs keep the derivation's association of sums. Here a sum is
+//! split into terms that have other users or are not sums. A factor of two products among them is
+//! multiplied once, and often several sums then need the same a + c.
 
 use super::single_replacements::{LOSS, fits};
 use super::{conditions, repair, replacements, walk};
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Edge};
 
-/// A sum of more terms is not looked at.
+/// Largest number of terms of a sum that is examined.
 const TERMS: usize = 12;
 
 /// A product as a factor and the rest, which has the sign.
@@ -19,11 +19,12 @@ struct Split {
     rest: Edge,
 }
 
-/// How often a walk may follow what was collected.
+/// Largest number of walks after factors were collected.
 const WALKS: usize = 2;
 
-/// Collects factors as long as that saves anything, after all else has been tried: no function has more operations
-/// than without it. What it opens up a walk may carry on.
+/// Collects factors as long as that saves operations, after all other searches.
+///
+/// So no function gets more operations than without it. A walk may then find further savings.
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if limits.pair_rounds == 0 {
         return;
@@ -42,7 +43,7 @@ pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     }
 }
 
-/// Collects factors as long as that saves anything; whether it did.
+/// Collects factors as long as that saves operations; returns whether it did.
 fn pays(dag: &mut Dag, limits: &SearchLimits) -> bool {
     let first = dag.total();
     loop {
@@ -62,7 +63,7 @@ fn pays(dag: &mut Dag, limits: &SearchLimits) -> bool {
     }
 }
 
-/// Collects factors in all sums; the operations saved.
+/// Collects factors in all sums; returns the operations saved.
 fn improve(dag: &mut Dag) -> i32 {
     let mut saved = 0;
     for node in 0..dag.len() {
@@ -80,7 +81,7 @@ fn is_open_sum(dag: &Dag, node: usize) -> bool {
     dag.is_open(node) && matches!(dag.definition(node), Definition::Sum(..))
 }
 
-/// The terms of a sum, or none if they are too few or too many.
+/// The terms of a sum; empty if they are too few or too many.
 fn terms(dag: &Dag, sum: usize) -> Vec<Edge> {
     let mut terms = Vec::new();
     let mut open = vec![Edge::to(sum)];
@@ -100,7 +101,7 @@ fn terms(dag: &Dag, sum: usize) -> Vec<Edge> {
     terms
 }
 
-/// The ways to take a factor out of a product that nothing else needs.
+/// All factorisations of a product that has no other user.
 fn splits(dag: &Dag, term: Edge) -> Vec<Split> {
     let node = term.node();
     match dag.definition(node) {
@@ -116,7 +117,7 @@ fn splits(dag: &Dag, term: Edge) -> Vec<Split> {
     }
 }
 
-/// Collects one factor in a sum, that which saves most; what it saves.
+/// Collects the factor that saves most in a sum; returns the operations saved.
 fn collect(dag: &mut Dag, sum: usize) -> Option<i32> {
     let terms = terms(dag, sum);
     let all: Vec<Vec<Split>> = terms.iter().map(|&term| splits(dag, term)).collect();
@@ -146,7 +147,7 @@ fn collect(dag: &mut Dag, sum: usize) -> Option<i32> {
 /// A factor that two terms of a sum share.
 #[derive(Clone, Copy)]
 struct CommonFactor {
-    /// The two terms, by their place in the sum.
+    /// The two terms, by their position in the sum.
     places: [usize; 2],
     /// The factor's node.
     factor: usize,
@@ -154,7 +155,7 @@ struct CommonFactor {
     rests: [Edge; 2],
 }
 
-/// The operations that are saved by taking a factor out of two terms of a sum; done if it `stays`.
+/// Operations saved by factoring two terms of a sum; the change is kept if it `stays`.
 fn tried(dag: &mut Dag, sum: usize, terms: &[Edge], common: &CommonFactor, stays: bool) -> i32 {
     let known = dag.len();
     let scope = dag.scope(sum);
@@ -184,7 +185,7 @@ fn tried(dag: &mut Dag, sum: usize, terms: &[Edge], common: &CommonFactor, stays
     if stays { 0 } else { saving }
 }
 
-/// What has the value of a definition, or a new node.
+/// An existing node of a definition's value, or a new node.
 fn node_of(dag: &mut Dag, definition: Definition, scope: u32) -> Edge {
     let value = dag.fingerprint_of(definition).value();
     match dag.find(value) {

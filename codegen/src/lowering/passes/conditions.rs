@@ -1,30 +1,30 @@
-//! A condition is computed from nothing that a later condition protects.
+//! Removes dependencies of conditions on values that later conditions protect.
 //!
-//! The search may find that a leg's radicand is cheaper in terms of another leg's root. Where the other leg
-//! is out of reach that root is no number, the radicand neither, and the wrong leg would be named. So what
-//! is checked first gets the derivation's forms back, in which legs stand side by side.
+//! The search may express a leg's radicand by another leg's root. If the other leg is out of reach,
+//! its root is NaN and so is the radicand, and the error would name the wrong leg. So conditions
+//! that are checked first get the derivation's forms back, in which legs are independent.
 
 use super::repair::keep;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition};
 use std::collections::HashMap;
 
-/// Undoes what makes conditions depend on later ones.
+/// Reverts replacements that make conditions depend on later ones.
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if limits.replaces {
         improve(dag);
     }
 }
 
-/// Whatever the limits are.
+/// The pass regardless of the limits.
 pub(super) fn improve(dag: &mut Dag) {
     while let Some(culprit) = culprit(dag) {
         keep(dag, culprit);
     }
 }
 
-/// The node nearest to a condition, on the way to what a later one protects, that is written in another way
-/// than in the derivation.
+/// The replaced node closest to a condition, on the path to a value that a later condition
+/// protects.
 fn culprit(dag: &Dag) -> Option<usize> {
     let mut protected = HashMap::new();
     for (place, guard) in dag.guards().iter().enumerate() {
@@ -43,7 +43,7 @@ fn culprit(dag: &Dag) -> Option<usize> {
     })
 }
 
-/// The nodes from one down to the first that is wanted among those that it is computed from.
+/// The path from a node down to the first wanted one among its operands.
 fn way(dag: &Dag, from: usize, is_wanted: impl Fn(usize) -> bool) -> Option<Vec<usize>> {
     let mut reached_from = HashMap::from([(from, from)]);
     let mut stack = vec![from];

@@ -1,9 +1,9 @@
-//! A condition matters where its value is divided by or has its root taken, and everywhere if it is one on the pose.
+//! Removes guards whose value is neither a divisor nor a radicand; guards on the pose are kept.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition};
 
-/// Lets the other guards go, with what only they need.
+/// Removes unneeded guards, with nodes that only they use.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     let needed = dag.needed(dag.entries().iter().map(|entry| entry.node()));
     let mut matters = vec![false; dag.len()];

@@ -1,21 +1,19 @@
-//! The optimiser: what is done to the DAG of a function, in this order.
+//! The optimiser: passes over the DAG of a function, in order.
 //!
 //! Every node has a fingerprint, its values at two random points of the field
-//! ([`cas`](crate::cas)). Whatever has the fingerprint of a node can stand for it. So for a node that is
-//! expensive, the search asks a table of values: is it the sum, the difference, the product or the
-//! quotient of two nodes that are there anyway? And if not: of one node that is there and one that could
-//! be had by a single operation, best of all an operation that serves several such nodes
-//! at once? These are the tricks a hand finds (1 + cot² = 1/sin², factoring, common parts of sums),
-//! found without knowing any of them.
+//! ([`cas`](crate::cas)). An expression with the same fingerprint can replace the node. For an
+//! expensive node, the search looks in a table of values whether it is the sum, difference, product
+//! or quotient of two existing nodes. Then it looks for forms of one existing node and one that a
+//! single operation gives, preferably an operation that serves several nodes. This finds what one
+//! does by hand (1 + cot² = 1/sin², factoring, common parts of sums), without rules for it.
 //!
-//! What a replacement saves is counted exactly: the operations that nothing else needs any more
-//! (the node's *maximal fan-out free cone*, as in the resubstitution of logic synthesis), less those
-//! that it adds. The tree of dominators says at once which operations these can be, so that of the
-//! millions of sums and products of two nodes only those few are tried that may save something. Where
-//! nothing saves any more, a walk among forms of equal cost goes on, and at last factors are collected that
-//! products have in common across other terms of their sum. No new divisor is ever introduced, so
-//! the function is defined wherever it was, and no sum that cancels near singular configurations where
-//! the form that it replaces does not.
+//! The saving of a replacement is counted exactly: the operations that become unused minus those
+//! that it adds. The former are the node's *maximal fan-out free cone*, as in the resubstitution of
+//! logic synthesis. The dominator tree gives these cones, so among millions of sums and products
+//! only the few that may save something are tried. When nothing saves any more, a walk among forms
+//! of equal cost goes on. Finally, factors that products share across terms of a sum are collected.
+//! No new divisor is introduced, so the function's domain stays the same. No replacement cancels
+//! near singular configurations if the original form does not.
 
 mod angles;
 mod common_factors;
@@ -65,17 +63,17 @@ pub(crate) const PASSES: [Pass; 13] = [
     pass("reciprocals", reciprocals::run),
 ];
 
-/// Parts of passes that are tried on their own.
+/// Parts of passes that are tested separately.
 #[cfg(test)]
 pub(crate) const PARTS: [Pass; 2] = [
     pass("single replacements", single_replacements::run),
     pass("shared pairs", shared_pairs::run),
 ];
 
-/// Does all passes. What holds of every DAG is checked after each one in builds for development.
+/// Runs all passes; development builds check the invariants after each.
 ///
 /// # Errors
-/// The invariant that a pass has broken.
+/// The invariant that a pass violates.
 pub(crate) fn run(dag: &mut Dag, limits: &SearchLimits) -> Result<(), InternalError> {
     verify(dag, "from arena")?;
     for pass in PASSES {

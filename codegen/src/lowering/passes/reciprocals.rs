@@ -1,9 +1,9 @@
-//! A product with a reciprocal that nothing else needs is a quotient.
+//! Products with a reciprocal that has no other user become quotients.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Edge};
 
-/// Writes x × (1 / y) as x / y.
+/// Replaces x × (1 / y) by x / y.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     for node in 0..dag.len() {
         if let Definition::Product(a, b) = dag.definition(node)

@@ -1,26 +1,27 @@
-//! Entries whose errors have grown too much get forms of the derivation back.
+//! Restores the derivation's forms for entries whose errors have grown too much.
 //!
-//! A form is taken if it keeps the digits of its own node. What is computed from several such nodes can lose
-//! more than each of them: where their errors were the same in the derivation's form, they cancelled. So in
-//! the end the entries themselves are looked at, and what makes one of them worse is undone for good.
+//! A replacement keeps the accuracy of its own node. Dependents of several such nodes can lose more
+//! than each of them, if errors that were equal in the derivation's form cancelled. So finally the
+//! entries themselves are examined, and replacements that make one of them worse are reverted
+//! permanently.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::Dag;
 
-/// How much larger than in the derivation's form an entry's error may be.
+/// Largest error of an entry, relative to the derivation's form.
 const LOSS: f64 = 10.0;
 
-/// From this on an operand is to blame.
+/// Relative error above which an operand is the cause.
 const BLAME: f64 = 1.5;
 
-/// Undoes what makes entries worse.
+/// Reverts replacements that make entries worse.
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if limits.replaces {
         improve(dag);
     }
 }
 
-/// Whatever the limits are.
+/// The pass regardless of the limits.
 pub(super) fn improve(dag: &mut Dag) {
     loop {
         dag.refresh_all();
@@ -35,7 +36,7 @@ pub(super) fn improve(dag: &mut Dag) {
     }
 }
 
-/// How much larger than in the derivation's form a node's error is.
+/// Error of a node, relative to the derivation's form.
 fn loss(dag: &Dag, node: usize) -> f64 {
     let definition = dag.definition(node);
     if definition.is_leaf() {
@@ -45,7 +46,7 @@ fn loss(dag: &Dag, node: usize) -> f64 {
     }
 }
 
-/// The last node that is written in another way, going from operand to worst operand.
+/// The last replaced node on the path from operand to worst operand.
 fn culprit(dag: &Dag, entry: usize) -> Option<usize> {
     let mut found = None;
     let mut node = entry;
@@ -63,7 +64,7 @@ fn culprit(dag: &Dag, entry: usize) -> Option<usize> {
     }
 }
 
-/// Writes a node as the derivation has it, for good.
+/// Restores the derivation's form of a node permanently.
 pub(super) fn keep(dag: &mut Dag, node: usize) {
     dag.keep_own_form(node);
     let Some(own) = dag.own_form(node) else {
@@ -75,7 +76,7 @@ pub(super) fn keep(dag: &mut Dag, node: usize) {
     dag.replace(node, own);
 }
 
-/// Writes what a node is computed from as the derivation has it, as long as another one is part of it.
+/// Restores forms of a node's operands as long as they depend on another node.
 fn free(dag: &mut Dag, node: usize, from: usize) {
     if !dag.depend([node].into_iter(), from) {
         return;

@@ -1,4 +1,4 @@
-//! Single replacements and pairs in turn, as long as that saves anything.
+//! Alternates single replacements and pairs as long as that saves operations.
 
 use super::{shared_pairs, single_replacements};
 use crate::lowering::SearchLimits;
@@ -12,7 +12,7 @@ pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     settle(dag, limits, limits.pair_rounds);
 }
 
-/// Replaces nodes as long as that saves anything, with so many rounds of pairs at most.
+/// Replaces nodes as long as that saves operations, with at most `rounds` rounds of pairs.
 pub(super) fn settle(dag: &mut Dag, limits: &SearchLimits, mut rounds: usize) {
     loop {
         let mut saved = single_replacements::improve(dag);

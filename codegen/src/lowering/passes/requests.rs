@@ -1,9 +1,9 @@
-//! What nodes ask for: the values with which one more operation gives them.
+//! Requests of nodes: the values from which one more operation gives them.
 
 use crate::cas::field::{ByValue, Element, canonical};
 use crate::lowering::dag::{Dag, Dominators, Edge};
 
-/// How a target is made of a node that is there and the value it asks for.
+/// How a target follows from an existing node and the requested value.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Form {
     Plus,
@@ -11,19 +11,19 @@ pub(super) enum Form {
     Over,
 }
 
-/// A target that asks for a value.
+/// A target that requests a value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Request {
     pub(super) target: u32,
     pub(super) with: Edge,
     pub(super) form: Form,
-    /// Whether the negative of the value is asked for.
+    /// Whether the negative of the value is requested.
     pub(super) negative: bool,
-    /// The request for the same value before this one.
+    /// The previous request for the same value.
     pub(super) next: Option<u32>,
 }
 
-/// What the targets ask for, but for what could save them nothing.
+/// Requests of the targets, without those that cannot save anything.
 pub(super) fn requests(
     dag: &Dag,
     tree: &Dominators,

@@ -1,9 +1,9 @@
-//! What differs from the derivation without need is written as the derivation has it.
+//! Restores a node's derived form if the search changed it without saving operations.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::Dag;
 
-/// Gives nodes the derivation's own form again where that costs nothing.
+/// Restores the derivation's form of nodes where that costs nothing.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     loop {
         let mut count = 0;

@@ -1,9 +1,9 @@
-//! A product with the sign of something is a selection, not a multiplication.
+//! Replaces products with a sign by selections, which need no multiplication.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Edge};
 
-/// Writes x × sign(y) as x with the sign of y.
+/// Replaces x × sign(y) by x with the sign of y.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     for node in 0..dag.len() {
         if let Definition::Product(a, b) = dag.definition(node)

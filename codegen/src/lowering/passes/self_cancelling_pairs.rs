@@ -1,11 +1,11 @@
-//! Pairs whose value only they themselves ask for.
+//! Pairs whose value only they themselves request.
 //!
-//! t = c + m asks for m = t - c, and the pair of t and c has that value. Nothing is saved by it, but a third
-//! of all pairs are such ones: they are known before a value is looked up.
+//! t = c + m requests m = t - c, and the pair of t and c has that value. Such a pair saves nothing,
+//! but a third of all pairs are of this kind. They are excluded before a value is looked up.
 
 use super::requests::{Form, Request};
 
-/// What is done with a pair, as a bit.
+/// Operation on a pair, as a bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Sum = 1,
@@ -13,12 +13,12 @@ pub(super) enum Kind {
     Product = 4,
 }
 
-/// Two nodes, the smaller first, and what is done with them.
+/// Two nodes, the smaller first, and the operation on them.
 type Pair = ((u32, u32), Kind);
 
-/// For each two of a group's nodes which of their values only they ask for.
+/// For each two nodes of a group, the operations whose values only they request.
 pub(super) struct SelfCancellingPairs {
-    /// The number of each node in the group.
+    /// Index of each node in the group.
     places: Vec<u32>,
     size: usize,
     /// The bits of a smaller node with all others, for one node after the other.
@@ -26,7 +26,7 @@ pub(super) struct SelfCancellingPairs {
 }
 
 impl SelfCancellingPairs {
-    /// Of the requests that have a value in common, the last of each in `heads`.
+    /// Collects the pairs; `heads` has the last of the requests for each value.
     pub(super) fn new(
         group: &[usize],
         requests: &[Request],
@@ -48,7 +48,7 @@ impl SelfCancellingPairs {
         own
     }
 
-    /// Where the bits of a node with all nodes of the group begin.
+    /// Start of the bits of a node with all nodes of the group.
     fn row(&self, node: usize) -> usize {
         self.places[node] as usize * self.size
     }
@@ -59,7 +59,7 @@ impl SelfCancellingPairs {
     }
 }
 
-/// The pair that has the value which a request and those before it ask for, if they are all its own.
+/// The pair that makes all requests for a value, if there is only one.
 fn only_pair(requests: &[Request], head: u32) -> Option<Pair> {
     let first = &requests[head as usize];
     let pair = pair_of(first)?;
@@ -74,7 +74,7 @@ fn only_pair(requests: &[Request], head: u32) -> Option<Pair> {
     Some(pair)
 }
 
-/// The pair of a request's target and the node with which it asks, if that has the value asked for.
+/// The pair of a request's target and existing node, if it has the requested value.
 fn pair_of(request: &Request) -> Option<Pair> {
     let kind = match request.form {
         Form::Plus if request.with.is_negative() => Kind::Sum,

@@ -1,10 +1,10 @@
-//! Nodes that are two operations away from others, and operations that serve several nodes.
+//! Replaces nodes that are two operations from others, by operations that may serve several nodes.
 //!
-//! A target t asks for every value m with which one more operation gives it: t = c + m, t = c m,
-//! t = m / c. All sums, differences and products of two nodes are then held against what was asked for.
-//! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
-//! have little to do with another leg's; a small function is searched as a whole, and a heading with many
-//! nodes in pieces, each a run of its own nodes in the order in which the derivation has made them.
+//! A target t requests every value m from which one more operation gives it: t = c + m, t = c m,
+//! t = m / c. All sums, differences and products of two nodes are then compared with the requests.
+//! This is done heading by heading, each with the operands of its nodes, because nodes of different
+//! legs have little in common. A small function is searched as a whole. A heading with many nodes
+//! is searched in pieces, each a run of nodes in the order of the derivation.
 
 use super::requests::{Form, Request, requests};
 use super::self_cancelling_pairs::{Kind, SelfCancellingPairs};
@@ -15,7 +15,7 @@ use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
 use std::collections::BTreeSet;
 
-/// A new node and the bound of what it can save.
+/// A new node and an upper bound of its saving.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Hit {
     bound: i32,
@@ -24,7 +24,7 @@ struct Hit {
     negative: bool,
 }
 
-/// The pass on its own: one round.
+/// The pass for tests: one round.
 #[cfg(test)]
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if limits.pair_rounds > 0 {
@@ -32,7 +32,7 @@ pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     }
 }
 
-/// Replaces nodes group by group, or together if they are few; the operations saved.
+/// Replaces nodes group by group, or together if they are few; returns the operations saved.
 pub(super) fn improve(dag: &mut Dag, limits: &SearchLimits) -> i32 {
     let groups = groups(dag, limits);
     let saved = groups.iter().map(|group| improve_group(dag, group)).sum();
@@ -46,13 +46,13 @@ pub(super) fn improve(dag: &mut Dag, limits: &SearchLimits) -> i32 {
 /// Nodes that are searched together.
 #[derive(Clone)]
 struct Group {
-    /// Nodes of one scope, or a part of them: those that are improved.
+    /// Nodes of one scope or part of it, which are improved.
     own: Vec<usize>,
-    /// These nodes and their operands, of which pairs are tried.
+    /// These nodes and their operands, whose pairs are tried.
     all: Vec<usize>,
 }
 
-/// The groups that are searched, one after the other.
+/// The groups to search, in order.
 fn groups(dag: &mut Dag, limits: &SearchLimits) -> Vec<Group> {
     let live: Vec<usize> = (0..dag.len()).filter(|&n| dag.is_live(n)).collect();
     if live.len() <= limits.whole_nodes {
@@ -77,7 +77,7 @@ fn groups(dag: &mut Dag, limits: &SearchLimits) -> Vec<Group> {
     groups
 }
 
-/// Runs of a heading's nodes, each with no more than `most` nodes together with those they are made of.
+/// Runs of a heading's nodes, each with at most `most` nodes including their operands.
 fn pieces(dag: &Dag, own: &[usize], most: usize) -> Vec<Group> {
     let mut pieces: Vec<Group> = Vec::new();
     let (mut run, mut all) = (Vec::new(), BTreeSet::new());
@@ -118,7 +118,7 @@ fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
         }
         let Some(&head) = heads.get(&key) else { return };
         let bound = bound(&requests, head, &tree, definition);
-        // What is there already is a matter of single operations.
+        // Existing values belong to the search for single operations.
         if bound > 0 && dag.find(value).is_none() {
             hits.push(Hit {
                 bound,
@@ -134,11 +134,13 @@ fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
         .sum()
 }
 
-/// What the value could save at most: of each target's cone what the new form does not need itself, but
-/// one operation, and the value's own.
+/// Upper bound of the saving of a value.
+///
+/// It is the sum over the targets of their cones without the nodes of the new form and without one
+/// operation, minus the value's own operation.
 fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definition) -> i32 {
     let mut bound = -1;
-    // Requests of one target stand together.
+    // Requests of one target are adjacent.
     let mut last = (u32::MAX, 0);
     let mut at = Some(head);
     while let Some(number) = at {
@@ -158,7 +160,8 @@ fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definit
     bound
 }
 
-/// All sums, differences and products of two nodes, but for values that only these two ask for.
+/// Calls a function for all pairs of nodes and operations, without values that only these two
+/// request.
 fn for_each_pair(
     dag: &Dag,
     all: &[usize],
@@ -185,8 +188,9 @@ fn for_each_pair(
     }
 }
 
-/// Adds the node of a hit and gives it to all targets for which it saves something; undone if it does
-/// not save anything in all.
+/// Adds the node of a hit and replaces all targets for which it saves operations.
+///
+/// The change is reverted if it saves nothing in total.
 fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
     let definition = hit.definition;
     if definition.operands().any(|o| !dag.is_live(o)) {
@@ -205,10 +209,10 @@ fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
     saved
 }
 
-/// Gives a new node to the targets of a hit.
+/// Uses a new node in the targets of a hit.
 fn give(dag: &mut Dag, requests: &[Request], hit: &Hit, node: Edge) -> Option<i32> {
     let wanted = wanted(dag, requests, hit, node);
-    // Each target's saving counts the new operation once; all together they need it once.
+    // Each target's saving counts the new operation once; all together need it only once.
     let hoped: i32 = wanted.iter().map(|(_, _, saving)| saving + 1).sum();
     if hoped <= 1 {
         return None;
@@ -239,8 +243,8 @@ fn give(dag: &mut Dag, requests: &[Request], hit: &Hit, node: Edge) -> Option<i3
     None
 }
 
-/// The best replacement of each target by the new node, with what it saves on its own, where that is
-/// not less than nothing.
+/// The best replacement of each target by the new node, with its own saving, unless that is
+/// negative.
 fn wanted(
     dag: &mut Dag,
     requests: &[Request],

@@ -1,8 +1,9 @@
-//! Signs move outwards, to where they cost nothing.
+//! Moves signs outwards, where they cost nothing.
 //!
-//! A product with a negative is the negative of a product, and -a - b is -(a + b): the node computes the
-//! value without the sign, and the sign goes on to whoever uses it. What is left are differences, and
-//! negative entries. The sign of a constant is the constant's, but in a difference.
+//! A product with a negative is the negative of a product, and -a - b is -(a + b). The node
+//! computes the value without the sign, and the sign moves to its users. Only differences and
+//! negative entries remain. Signs of constants are merged into the constants, except in
+//! differences.
 
 use crate::cas::hasher::QuickMap;
 use crate::lowering::SearchLimits;
@@ -30,7 +31,7 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     dag.measure_depths();
 }
 
-/// The edge to a negative constant instead of the negative edge to a constant.
+/// Replaces a negative edge to a constant by an edge to the negative constant.
 fn with_its_sign(dag: &mut Dag, edge: Edge, negatives: &mut QuickMap<usize, usize>) -> Edge {
     let Definition::Constant(constant) = dag.definition(edge.node()) else {
         return edge;
@@ -46,7 +47,7 @@ fn with_its_sign(dag: &mut Dag, edge: Edge, negatives: &mut QuickMap<usize, usiz
     Edge::to(negative)
 }
 
-/// A definition with its sign taken out, and whether its negative is meant.
+/// A definition without its sign, and whether its negative is meant.
 fn outwards(definition: Definition) -> (Definition, bool) {
     let differ = |a: Edge, b: Edge| a.is_negative() != b.is_negative();
     match definition {

@@ -1,19 +1,19 @@
-//! Nodes that are one operation away from two others.
+//! Replaces nodes that are one operation from two others.
 
 #[cfg(test)]
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition};
 
-/// How much larger than a node's own error that of a cheaper form may be.
+/// Largest error of a cheaper form, relative to the node's own.
 pub(super) const LOSS: f64 = 10.0;
 
-/// The pass on its own: until nothing is saved.
+/// The pass for tests: repeats until nothing is saved.
 #[cfg(test)]
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     while limits.replaces && improve(dag) > 0 {}
 }
 
-/// Replaces every node for which that saves something; the operations saved.
+/// Replaces every node for which that saves operations; returns the operations saved.
 pub(super) fn improve(dag: &mut Dag) -> i32 {
     let mut saved = 0;
     let mut divisors = dag.divisors();
@@ -31,7 +31,7 @@ pub(super) fn improve(dag: &mut Dag) -> i32 {
     saved
 }
 
-/// The replacement of a node that saves most, if one saves anything.
+/// The replacement of a node that saves most, if any saves operations.
 fn best(dag: &mut Dag, node: usize, divisors: &[usize]) -> Option<(Definition, i32)> {
     let mut best: Option<(Definition, i32)> = None;
     for by in dag.forms(node, divisors) {
@@ -43,8 +43,10 @@ fn best(dag: &mut Dag, node: usize, divisors: &[usize]) -> Option<(Definition, i
     best
 }
 
-/// Whether a form can stand for a node: it is not computed from it, has its value indeed, and an error no
-/// larger than `loss` times its own.
+/// Whether a form can replace a node.
+///
+/// It must not depend on the node, must have its value, and an error of at most `loss` times the
+/// node's own.
 pub(super) fn fits(dag: &Dag, by: Definition, node: usize, loss: f64) -> bool {
     !dag.depend(by.operands(), node) && dag.means(by, node) && dag.loss(by, node) <= loss
 }

@@ -1,9 +1,9 @@
 //! A walk among forms of equal cost.
 //!
-//! Where no replacement saves anything any more, many cost nothing, and from the form that one of them
-//! leads to others may save something again (plateau moves: B. Selman, H. Kautz, B. Cohen, 1994). So
-//! every node that could be written in another way at the same cost is, at random but always the same,
-//! and the search goes on from there, as long as that pays.
+//! When no replacement saves operations, many cost nothing. From the forms that they lead to,
+//! others may save operations again (plateau moves: B. Selman, H. Kautz, B. Cohen, 1994). So every
+//! node with other forms of equal cost gets a pseudo-random one of them. The search goes on from
+//! there, as long as it saves operations.
 
 use super::single_replacements::fits;
 use super::{repair, replacements};
@@ -11,10 +11,10 @@ use crate::cas::Stream;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::Dag;
 
-/// How much larger than a node's own error that of a form of equal cost may be.
+/// Largest error of a form of equal cost, relative to the node's own.
 const LOSS: f64 = 2.0;
 
-/// Improves a graph in which nothing can be saved by replacements one after the other.
+/// Improves a graph in which single replacements save nothing.
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if dag.len() > limits.walk_nodes {
         return;
@@ -39,7 +39,7 @@ pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     }
 }
 
-/// Writes every node in a way drawn from those that cost nothing, its own among them.
+/// Gives every node a random form among those of equal cost, including its own.
 fn step(dag: &mut Dag, stream: &mut Stream) {
     let mut divisors = dag.divisors();
     for node in 0..dag.len() {

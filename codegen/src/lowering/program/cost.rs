@@ -1,32 +1,34 @@
-//! What a program costs, by one rule.
+//! Operation count of a program.
 
 use super::{Operand, Operation, Program};
 use std::fmt;
 use std::ops::AddAssign;
 
-/// Operation counts by the rule: a sum of n terms counts n - 1, a product of n factors n - 1, a product
-/// with a sign is one, a square 1, a division 1; all others stand apart.
+/// Operation counts of a program.
+///
+/// A sum of n terms counts n - 1, a product of n factors n - 1, a product with a sign one, a square
+/// one, and a division one. All others are counted separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Cost {
     /// Additions and subtractions.
     pub additions: usize,
-    /// Multiplications, those by constants and by signs included.
+    /// Multiplications, including those by constants and by signs.
     pub multiplications: usize,
     /// Divisions.
     pub divisions: usize,
     /// Square roots.
     pub square_roots: usize,
-    /// Angles of which sine or cosine is taken.
+    /// Angles whose sine or cosine is computed.
     pub trigonometric_pairs: usize,
     /// Arc tangents.
     pub arc_tangents: usize,
-    /// Velocities whose signs are taken.
+    /// Velocities whose signs are used.
     pub signs: usize,
-    /// Values that are compared, so that the outputs mean something.
+    /// Guarded values.
     pub guards: usize,
     /// Sign changes.
     pub negations: usize,
-    /// Values that are computed and are no output themselves.
+    /// Computed values that are not outputs.
     pub intermediates: usize,
 }
 
@@ -37,13 +39,13 @@ impl Cost {
         self.additions + self.multiplications + self.divisions
     }
 
-    /// Whether nothing at all is done.
+    /// Whether the program does nothing.
     #[must_use]
     pub fn is_nothing(&self) -> bool {
         *self == Self::default()
     }
 
-    /// What stands apart of the operations, each with its name.
+    /// The counts that are not operations, with their names.
     fn others(&self) -> [(usize, &'static str); 7] {
         [
             (self.square_roots, "square root"),
@@ -134,7 +136,7 @@ impl Program {
     }
 }
 
-/// Operands, each once.
+/// A set of operands.
 #[derive(Default)]
 struct Distinct(Vec<Operand>);
 

@@ -1,4 +1,4 @@
-//! The straight-line program: the one form that all backends take.
+//! The straight-line program, the common input of all backends.
 
 mod cost;
 mod verify;
@@ -7,23 +7,23 @@ pub use cost::Cost;
 
 use overact_core::ActuatorGroup;
 
-/// Where an operand comes from.
+/// Source of an operand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand {
     /// A constant.
     Constant(f64),
     /// Element of an input array.
     Input {
-        /// Which input.
+        /// Index of the input.
         array: usize,
-        /// Which element.
+        /// Index of the element.
         index: usize,
     },
     /// The result of an earlier step.
     Step(usize),
 }
 
-/// What a step computes.
+/// The computation of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "the variants say it")]
 pub enum Operation {
@@ -44,7 +44,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Whether the operation counts as one.
+    /// Whether the operation is counted.
     #[must_use]
     pub(crate) const fn is_counted(&self) -> bool {
         matches!(
@@ -53,7 +53,7 @@ impl Operation {
         )
     }
 
-    /// The same of other operands.
+    /// The same operation on other operands.
     #[must_use]
     pub(crate) fn map(self, mut to: impl FnMut(Operand) -> Operand) -> Self {
         match self {
@@ -91,20 +91,20 @@ impl Operation {
 /// One assignment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// What is computed.
+    /// The computation.
     pub operation: Operation,
-    /// The name that the derivation gave the value.
+    /// The name from the derivation.
     pub name: Option<String>,
-    /// The heading under which it stands, for instance a leg's name.
+    /// The heading of the step, for instance a leg's name.
     pub scope: String,
 }
 
-/// A number of an output.
+/// A number of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
     /// The value.
     pub operand: Operand,
-    /// Whether its negative is meant.
+    /// Whether the output is the negative of the value.
     pub negative: bool,
 }
 
@@ -118,7 +118,7 @@ impl Entry {
         }
     }
 
-    /// Whether it is zero whatever the inputs are.
+    /// Whether it is zero for all inputs.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         matches!(self.operand, Operand::Constant(zero) if zero == 0.0)
@@ -157,46 +157,48 @@ impl Array {
     }
 }
 
-/// What has to hold for the outputs to mean something.
+/// A condition for the outputs to be valid.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// The value is not negative, else the pose is out of the leg's reach, nor small against `home`, else the leg is
-    /// singular.
+    /// The value is nonnegative, otherwise the pose is out of the leg's reach. It is not small
+    /// relative to `home`, otherwise the leg is singular.
     Reach {
         /// Name of the leg.
         leg: String,
         /// The value at the home configuration; zero if only the sign matters.
         home: f64,
     },
-    /// The value is not small against `home`, else the leg is singular.
+    /// The value is not small relative to `home`, otherwise the leg is singular.
     Leg {
         /// Name of the leg.
         leg: String,
         /// The value's magnitude at the home configuration.
         home: f64,
     },
-    /// The value is not small against `home`, else the actuators do not determine the platform.
+    /// The value is not small relative to `home`, otherwise the actuators do not determine the
+    /// platform.
     Platform {
-        /// Which actuators they are.
+        /// The actuators.
         actuators: ActuatorGroup,
         /// The value's magnitude at the home configuration.
         home: f64,
     },
-    /// The value is at most `within` from zero, else the pose is none that the leg allows.
+    /// The value is at most `within` from zero, otherwise the leg does not allow the pose.
     Closed {
         /// Name of the leg.
         leg: String,
-        /// How far from zero the value may be, m or rad.
+        /// Largest distance of the value from zero, m or rad.
         within: f64,
     },
-    /// The value is not small against `home`, else the independent coordinates do not determine the others.
+    /// The value is not small relative to `home`, otherwise the independent coordinates do not
+    /// determine the others.
     Coordinates {
         /// The value's magnitude at the home configuration.
         home: f64,
     },
-    /// The value is positive, else the mass matrix is not positive definite.
+    /// The value is positive, otherwise the mass matrix is not positive definite.
     Mass,
-    /// The value's magnitude is at most this, else values computed from it might overflow.
+    /// The value's magnitude is at most this, otherwise values computed from it might overflow.
     Size {
         /// The largest magnitude.
         most: f64,
@@ -204,7 +206,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Whether it is a condition on the pose that holds whatever a function computes.
+    /// Whether it is a condition on the pose that applies to every function.
     pub(crate) const fn is_of_pose(&self) -> bool {
         matches!(self, Self::Closed { .. })
     }
@@ -230,14 +232,15 @@ pub struct Program {
     pub entries: Vec<Entry>,
     /// The assignments, operands first.
     pub steps: Vec<Step>,
-    /// Conditions, each on a step that exists.
+    /// Guards, each on an existing step.
     pub guards: Vec<Guard>,
-    /// In how many pieces its operations were searched, if it was too large for a search as a whole.
+    /// Number of pieces in which operations were searched, if the function was too large for a
+    /// search as a whole.
     pub pieces: usize,
 }
 
 impl Program {
-    /// All numbers that the program has in it.
+    /// All constants of the program.
     pub(crate) fn constants(&self) -> impl Iterator<Item = f64> {
         let operands = self.steps.iter().flat_map(|s| s.operation.operands());
         let operands = operands.chain(self.entries.iter().map(|e| e.operand));
@@ -247,7 +250,7 @@ impl Program {
         })
     }
 
-    /// All operands, those of guards, too.
+    /// All operands, including those of guards.
     pub(crate) fn operands(&self) -> impl Iterator<Item = Operand> {
         let of_steps = self.steps.iter().flat_map(|s| s.operation.operands());
         let of_entries = self.entries.iter().map(|e| e.operand);
@@ -256,7 +259,7 @@ impl Program {
             .chain(self.guards.iter().map(|g| g.operand))
     }
 
-    /// Puts other operands in the places of all.
+    /// Replaces all operands.
     pub(crate) fn replace(&mut self, mut by: impl FnMut(Operand) -> Operand) {
         for step in &mut self.steps {
             step.operation = step.operation.map(&mut by);
@@ -282,7 +285,7 @@ impl Program {
         used
     }
 
-    /// How often each step is used by steps, entries and guards.
+    /// Number of uses of each step by steps, entries and guards.
     #[must_use]
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.steps.len()];

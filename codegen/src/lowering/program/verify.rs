@@ -1,14 +1,16 @@
-//! What holds of every program.
+//! Invariants of a program.
 
 use super::{Condition, Operand, Program};
 use std::collections::HashSet;
 
 impl Program {
-    /// Checks what all backends take for granted: operands are there before they are used, constants are
-    /// numbers, guards and the output stand on values that exist, shapes fit, and every step is needed.
+    /// Checks the assumptions of all backends.
+    ///
+    /// Operands precede their users, constants are finite, guards and the output refer to existing
+    /// values, shapes fit, and every step is needed.
     ///
     /// # Errors
-    /// The first invariant that is broken, in words.
+    /// Describes the first violated invariant.
     pub(crate) fn verify(&self) -> Result<(), String> {
         self.verify_shapes()?;
         for (at, step) in self.steps.iter().enumerate() {
@@ -28,7 +30,7 @@ impl Program {
         }
     }
 
-    /// Arrays have names of their own, and the output as many numbers as its shape says.
+    /// Arrays have distinct names, and the output has as many numbers as its shape.
     fn verify_shapes(&self) -> Result<(), String> {
         let mut names = HashSet::new();
         for input in &self.inputs {
@@ -50,7 +52,7 @@ impl Program {
         Ok(())
     }
 
-    /// Whether an operand is there before step `before`; if not, what it is.
+    /// Checks that an operand exists before step `before`; describes it if not.
     fn verify_operand(&self, operand: Operand, before: usize) -> Result<(), String> {
         match operand {
             Operand::Constant(value) if !value.is_finite() => {
@@ -70,7 +72,7 @@ impl Program {
         }
     }
 
-    /// Guards stand on steps or inputs, and compare them with a magnitude that is one.
+    /// Guards refer to steps or inputs, and have a finite magnitude.
     fn verify_guards(&self) -> Result<(), String> {
         for (at, guard) in self.guards.iter().enumerate() {
             self.verify_operand(guard.operand, self.steps.len())

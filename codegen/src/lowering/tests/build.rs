@@ -1,4 +1,4 @@
-//! From the text of a case to a DAG.
+//! From the text of a test case to a DAG.
 
 use super::language::{Line, Text};
 use crate::cas::{Angle, Arena, Direction, Expr, InputElement, Number, Ratio, Stream};
@@ -8,12 +8,12 @@ use crate::lowering::program::{Array, Condition};
 use crate::lowering::{GuardedExpr, States};
 use std::collections::HashMap;
 
-/// Where a case starts.
+/// Starting point of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Start {
-    /// With what the arena makes of the expressions, as functions of robots do.
+    /// The graph that the arena makes of the expressions, as for functions of robots.
     Arena,
-    /// With the nodes as they are written, so that a pass meets what the arena would have folded.
+    /// The nodes as written, so that a pass gets nodes that the arena would have folded.
     Nodes,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Built {
 }
 
 impl Built {
-    /// Compares digits at states around home and near where guards fail.
+    /// Compares accuracy at states around home and near failing guards.
     pub(super) fn measure(&mut self) {
         let home =
             |element: InputElement| Some(self.home.get(element.array).copied().unwrap_or(0.7));
@@ -76,7 +76,7 @@ pub(super) fn build(lines: &[Line], start: Start) -> Built {
     }
 }
 
-/// The name of an input array; a test has few of them, so that it may live as long as the process.
+/// Leaks the name of an input array; a test has few of them.
 fn array(name: &str) -> &'static str {
     name.to_owned().leak()
 }
@@ -89,7 +89,7 @@ fn condition(line: &Line) -> Condition {
     }
 }
 
-/// The angle that a text is.
+/// The angle of a text.
 fn direction(arena: &Arena, text: &Text) -> Direction {
     let of = |text: &Text| direction(arena, text);
     match text {
@@ -168,7 +168,7 @@ fn expression<'a>(arena: &'a Arena, names: &HashMap<String, Expr<'a>>, text: &Te
     }
 }
 
-/// The nodes as they are written; the same text is the same node.
+/// The nodes as written; equal texts are the same node.
 fn nodes(arena: &Arena, lines: &[Line]) -> Dag {
     let leaves = lines.iter().flat_map(|line| match line {
         Line::Output(texts) => texts.clone(),
@@ -184,7 +184,7 @@ fn nodes(arena: &Arena, lines: &[Line]) -> Dag {
             }
         }
     }
-    // Angles are to be known before the first node.
+    // Angles have to be known before the first node.
     leaves.for_each(|text| angles(arena, &text));
     let mut work = Nodes {
         arena,

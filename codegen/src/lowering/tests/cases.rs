@@ -1,8 +1,8 @@
-//! What each pass makes of small expressions: one file for each case in `cases/`.
+//! Results of each pass on small expressions: one file for each case in `cases/`.
 //!
-//! A file says why the case is there, which passes are run, where it starts, what is given, and what is
-//! expected. `OVERACT_BLESS=1 cargo test -p overact-codegen --lib lowering` writes the expectations anew; they are
-//! to be read then.
+//! A file states the reason for the case, the passes, the starting point, the input and the
+//! expected result. `OVERACT_BLESS=1 cargo test -p overact-codegen --lib lowering` rewrites the
+//! expected results, which have to be reviewed.
 
 use super::build::{Start, build};
 use super::language::parse;
@@ -27,7 +27,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lowering/tests/cases")
 }
 
-/// The passes of a line such as `signs, selections`; none is `none`, and all are `all`.
+/// The passes in a line such as `signs, selections`; also `none` and `all`.
 fn passes(line: &str) -> Vec<Pass> {
     let known = || PASSES.into_iter().chain(PARTS);
     match line.trim() {
@@ -71,7 +71,7 @@ fn read(text: &str) -> Case {
     }
 }
 
-/// What the passes make of what is given.
+/// Result of the passes.
 fn run(case: &Case) -> String {
     let mut built = build(&parse(&case.given), case.start);
     built.measure();
@@ -82,7 +82,7 @@ fn run(case: &Case) -> String {
         let sound = built.dag.verify();
         sound.unwrap_or_else(|broken| panic!("after `{}`: {broken}", pass.name));
     }
-    // Once the angles are written out the graph can be put in order.
+    // A graph can be scheduled when its angles are planned.
     if case.passes.iter().any(|pass| pass.name == "angles") {
         let program = schedule(&built.dag, &built.inputs, &built.output);
         let program = program.expect("an order of the nodes");

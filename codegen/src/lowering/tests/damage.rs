@@ -1,4 +1,4 @@
-//! What is damaged is refused.
+//! Damaged graphs and programs are rejected.
 
 use super::build::{Built, Start, build};
 use super::random::function;
@@ -104,7 +104,7 @@ fn damaged_graphs_are_refused() {
     for seed in 0..20 {
         let Built { dag: sound, .. } = build(&function(seed), Start::Arena);
         for node in (0..sound.len()).filter(|&node| sound.is_open(node)) {
-            // A wrong sign, and an operand in place of another.
+            // A wrong sign, and a replaced operand.
             let mut is_first = true;
             let wrong_sign = sound
                 .definition(node)

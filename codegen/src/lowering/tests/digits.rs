@@ -1,4 +1,4 @@
-//! What the comparison of digits says, and what repair makes of it.
+//! Comparison of accuracy, and the effect of repair.
 
 use super::build::{Built, Start, build};
 use super::language::parse;
@@ -30,7 +30,7 @@ fn repair(dag: &mut Dag, limits: &SearchLimits) {
     dag.verify().expect("a sound graph");
 }
 
-/// A guard (a - b) (a + b) that is written a² - b², which loses its digits where it is near zero.
+/// A guard (a - b) (a + b) in the form a² - b², which is inaccurate near zero.
 fn lossy() -> (Dag, usize) {
     let text = "
         input a b x

@@ -1,4 +1,4 @@
-//! The tree of dominators says what counting uses says.
+//! The dominator tree agrees with counting uses.
 
 use super::build::{Start, build};
 use super::random::function;
@@ -16,7 +16,7 @@ fn branches_are_what_goes_with_a_node() {
             let mut with_another_use = dag.clone();
             with_another_use.hold(kept);
             for &of in nodes.iter().filter(|&&of| of != kept) {
-                // What both need, neither owns: it stays, too, and is not counted.
+                // A node that both need belongs to neither cone: it stays, too, and is not counted.
                 let stays = dag.cone(of) - with_another_use.cone(of);
                 let counted = tree.shared(of, kept);
                 assert!(counted <= stays, "function {seed}: {kept} of {of}");

@@ -1,4 +1,4 @@
-//! What depends on the constants of a leg alone is no step of a program in lanes.
+//! Values that depend on the constants of a leg alone are not steps of a program in lanes.
 
 use crate::lowering::lanes::fold;
 use crate::lowering::{Array, Entry, Operand, Operation, Program, Step};

@@ -1,9 +1,17 @@
-//! A tiny language of expressions for the cases.
+//! A small language of expressions for the test cases.
 //!
-//! A line is one of `input a b` (numbers or angles), `let x = …` (a name for the text only), `x = …` (a node
-//! with a name), `section leg1` (the heading of what follows), `guard x` (x may not be zero), `reach x` (x
-//! may not be negative), `home a = 2` and `output …, …`. Expressions are made of `+ - * /`, parentheses,
-//! numbers, `sqrt`, `sign`, `atan2`, and `cos` and `sin` of sums of inputs and `deg(30)`.
+//! The lines are:
+//!
+//! - `input a b`: numbers or angles;
+//! - `let x = …`: a name for the text only;
+//! - `x = …`: a node with a name;
+//! - `section leg1`: the heading of the following lines;
+//! - `guard x`: x must not be zero;
+//! - `reach x`: x must not be negative;
+//! - `home a = 2` and `output …, …`.
+//!
+//! Expressions contain `+ - * /`, parentheses, numbers, `sqrt`, `sign`, `atan2`, and `cos` and
+//! `sin` of sums of inputs and `deg(30)`.
 
 /// An expression.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,9 +1,9 @@
-//! A DAG as text: a line for each node that has a name or is used more than once, then the output.
+//! A DAG as text: one line for each node with a name or several users, then the output.
 
 use crate::lowering::dag::{Angle, Dag, Definition, Edge};
 use std::fmt::Write as _;
 
-/// The text of a DAG, and what its nodes count.
+/// The text of a DAG and the total cost of its nodes.
 pub(super) fn listing(dag: &Dag) -> String {
     let mut writer = Writer {
         dag,
@@ -33,7 +33,7 @@ struct Writer<'d> {
 }
 
 impl Writer<'_> {
-    /// The text of an edge within 0 a sum, 1 a product, 2 a divisor or operand.
+    /// The text of an edge inside of: 0 a sum, 1 a product, 2 a divisor or operand.
     fn edge(&mut self, edge: Edge, within: u8) -> String {
         let (own, text) = self.node(edge.node());
         let (own, text) = match (edge.is_negative(), own) {
@@ -48,7 +48,7 @@ impl Writer<'_> {
         }
     }
 
-    /// How tightly the text of a node binds, and the text.
+    /// Binding strength of a node's text, and the text.
     fn node(&mut self, node: usize) -> (u8, String) {
         if let Some(name) = &self.names[node] {
             return (2, name.clone());
@@ -99,7 +99,7 @@ impl Writer<'_> {
         element.map_or_else(|| "unknown".to_owned(), |e| e.array.to_owned())
     }
 
-    /// An angle that is not planned stands in brackets.
+    /// An angle that is not planned is in brackets.
     fn angle(&mut self, angle: Angle) -> String {
         let turn = match angle {
             Angle::Value(edge) => return self.edge(edge, 0),

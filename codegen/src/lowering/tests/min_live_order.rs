@@ -1,14 +1,14 @@
-//! The order in which few values wait for their last use.
+//! Tests of the order with few live values.
 
 use crate::lowering::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
 use crate::lowering::schedule_min_live;
 
-/// Element of the one input.
+/// Element of the only input.
 fn input(index: usize) -> Operand {
     Operand::Input { array: 0, index }
 }
 
-/// A program of an input, a matrix and these steps.
+/// A program of one input, a matrix and these steps.
 fn program(shape: [usize; 2], steps: &[Operation], entries: &[usize]) -> Program {
     let array = |name: &str, shape: &[usize]| Array {
         name: name.to_owned(),
@@ -30,7 +30,7 @@ fn program(shape: [usize; 2], steps: &[Operation], entries: &[usize]) -> Program
     }
 }
 
-/// How many values wait for a later step, at most, where results are written at once.
+/// Largest number of live values if results are written at once.
 fn waiting(program: &Program) -> usize {
     let last = |at: usize| {
         let uses = program.steps.iter().enumerate().skip(at + 1);
@@ -50,7 +50,7 @@ fn waiting(program: &Program) -> usize {
 #[test]
 fn what_shares_a_value_stands_side_by_side() {
     let step = Operand::Step;
-    // Two values, and of each two results, which the columns have the other way round.
+    // Two values with two results each, which the columns have in the opposite order.
     let steps = [
         Operation::Mul(input(0), input(1)),
         Operation::Mul(step(0), input(2)),
@@ -116,7 +116,7 @@ fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
 
 #[test]
 fn of_a_large_program_the_next_result_is_taken_as_it_stands() {
-    // The first two results share a value, the third needs nothing: it would be the first.
+    // The first two results share a value; the third needs no step and would come first.
     for (links, is_compared) in [(3, true), (32_000, false)] {
         let link = |at: usize| match at {
             0 => Operation::Mul(input(0), input(1)),

@@ -1,5 +1,5 @@
-//! Tests of the optimiser: what each pass makes of small expressions ([`cases`]), and what all passes
-//! keep on random ones ([`properties`]).
+//! Tests of the optimiser: each pass on small expressions ([`cases`]), and invariants of all passes
+//! on random ones ([`properties`]).
 
 mod build;
 mod cases;

@@ -1,5 +1,5 @@
-//! What every pass keeps, on random functions: the value of every output, the invariants of the graph, what
-//! it divides by, and no higher cost.
+//! Invariants of every pass on random functions: values of all outputs, invariants of the graph,
+//! divisors, and no higher cost.
 
 use super::build::{Built, Start, build};
 use super::random::function;
@@ -77,7 +77,8 @@ fn assert_close(found: &[f64], expected: &[f64], what: &str) {
     }
 }
 
-/// The outputs of a program by the meaning of its operations; the backends lie above this folder.
+/// Outputs of a program by the meaning of its operations; backends are in a higher layer than this
+/// folder.
 fn results(program: &Program, input: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
     let fetch = |operand: Operand, values: &[f64]| match operand {
@@ -109,7 +110,7 @@ fn results(program: &Program, input: &dyn Fn(usize) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// What a DAG divides by, whatever its sign.
+/// The divisors of a DAG, regardless of sign.
 fn divisors(dag: &Dag) -> BTreeSet<crate::cas::field::Element> {
     let value = |node: usize| canonical([dag.value(Edge::to(node))]).0[0];
     dag.divisors().into_iter().map(value).collect()
@@ -134,8 +135,8 @@ fn every_pass_keeps_outputs_and_divisors_and_costs_no_more() {
                 .unwrap_or_else(|broken| panic!("{what}: {broken}"));
             assert_close(&outputs(&dag, &symbols), &expected, &what);
             assert!(divisors(&dag).is_subset(&divided), "{what}: a new divisor");
-            // Angles are written out at the price of operations, repairs pay for digits, and conditions for
-            // naming the right leg.
+            // Angles, repairs and conditions may add operations, for evaluation, for accuracy, and
+            // for errors that name the right leg.
             if !["angles", "repair", "conditions"].contains(&pass.name) {
                 assert!(dag.total() <= cost, "{what}: {} after {cost}", dag.total());
             }
@@ -143,7 +144,7 @@ fn every_pass_keeps_outputs_and_divisors_and_costs_no_more() {
     }
 }
 
-/// Large functions are searched in pieces; small ones are, where the pieces are small enough.
+/// Large functions are searched in pieces; with small limits, small ones are, too.
 #[test]
 fn pieces_save_operations_and_keep_outputs() {
     let limits = SearchLimits {

@@ -3,8 +3,10 @@
 use super::language::{Line, Text};
 use crate::cas::Stream;
 
-/// The lines of a random function: shared parts, products, quotients by guarded values, roots of sums of
-/// squares, signs and sines and cosines of sums of angles.
+/// The lines of a random function.
+///
+/// It has shared parts, products, quotients by guarded values, roots of sums of squares, signs, and
+/// sines and cosines of sums of angles.
 pub(super) fn function(seed: u64) -> Vec<Line> {
     let mut draw = Draw {
         stream: Stream::new(seed),
@@ -31,7 +33,7 @@ pub(super) fn function(seed: u64) -> Vec<Line> {
 
 struct Draw {
     stream: Stream,
-    /// Names of what is there.
+    /// Names of existing values.
     values: Vec<String>,
     lines: Vec<Line>,
 }
@@ -46,7 +48,7 @@ impl Draw {
         self.values.push(name);
     }
 
-    /// Cosine and sine of p, of q or of a sum of both.
+    /// Cosine and sine of p, of q or of their sum.
     fn turn(&mut self, angle: &str) {
         let name = |name: &str| Text::Name(name.to_owned());
         let of = match (angle, self.stream.below(3)) {

@@ -1,4 +1,4 @@
-//! Errors of actuators that are too few, drive too much, or do not determine the platform's motion.
+//! Errors of actuators: too few, more driven motions than described, or a motion not determined.
 
 use super::motions::{Motions, listed};
 use crate::mechanism::mobility::Mobility;
@@ -11,7 +11,7 @@ use overact_description::Description;
 use overact_description::SIX;
 use overact_description::diagnostic::{Code, Diagnostic, DiagnosticKind};
 
-/// Fewer actuators than coordinates, with what the legs leave where they close.
+/// Fewer actuators than coordinates; states which motions the closed legs allow.
 pub(in crate::mechanism) fn too_few_actuators(
     description: &Description,
     mechanism: &Mechanism,
@@ -51,7 +51,7 @@ pub(in crate::mechanism) fn too_few_actuators(
         .help(help)
 }
 
-/// A platform with parasitic motion while it moves: what it does, and a way out.
+/// Describes the platform's parasitic motion and how to declare it.
 fn moves_aside(found: &Parasitic) -> String {
     format!(
         "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}: write {} beside `motion`, or give the legs more passive joints",
@@ -67,8 +67,8 @@ fn key(coordinates: &[usize]) -> String {
     format!("independent = [{}]", names.collect::<Vec<_>>().join(", "))
 }
 
-/// Independent coordinates of a platform with parasitic motion which are not as many as the legs leave, or do not
-/// determine the others.
+/// Independent coordinates of a platform with parasitic motion that are of the wrong number, or do
+/// not determine the others.
 pub(in crate::mechanism) fn independent(
     description: &Description,
     mechanism: &Mechanism,
@@ -118,7 +118,7 @@ fn words(directions: &[usize]) -> String {
     Motions::of_directions(&parts).words("along", "about")
 }
 
-/// The legs whose joints are all passive, where the missing actuator may have its place.
+/// The legs with passive joints only, where the missing actuator may belong.
 fn legs_without_actuator(mechanism: &Mechanism) -> String {
     let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
     let names = mechanism.legs.iter().filter(passive);
@@ -130,7 +130,7 @@ fn legs_without_actuator(mechanism: &Mechanism) -> String {
     }
 }
 
-/// Legs that leave the platform motions which are not described, and actuators that drive them.
+/// Legs that allow motions which are not described, while actuators drive them.
 pub(in crate::mechanism) fn not_held(description: &Description, mobility: &Mobility) -> Diagnostic {
     let span = description.platform.as_ref().map(|p| p.motion.span.clone());
     let span = span.unwrap_or(description.name.span.clone());
@@ -156,7 +156,7 @@ pub(in crate::mechanism) fn underactuated(
         Some(rates.select_rows(&mechanism.actuated()))
     };
     let owner = owner(mechanism);
-    // At poses beside home the robot shows whether home alone is singular.
+    // Poses near home show whether only home is singular.
     let everywhere = random_states(mechanism, 4, 3).into_iter().all(|state| {
         let mut beside = mechanism.clone();
         beside.home = Home::new(mechanism, state.pose, state.joints);
@@ -195,10 +195,11 @@ pub(in crate::mechanism) fn underactuated(
         .help(help)
 }
 
-/// What moves where there is no platform, and more than a skeleton.
+/// The moving system of a robot without a platform that is more than a skeleton.
 const ROBOT: &str = "the robot";
 
-/// What the actuators have to hold: the platform, the skeleton, or with it the branches on bodies of chains.
+/// What the actuators have to hold: the platform, the skeleton, or the skeleton and the branches on
+/// chains.
 fn owner(mechanism: &Mechanism) -> &'static str {
     let mut others = mechanism.legs.iter().skip(1);
     match &mechanism.platform {
@@ -208,14 +209,14 @@ fn owner(mechanism: &Mechanism) -> &'static str {
     }
 }
 
-/// How the platform can move while no actuator does.
+/// The motions of the platform with all actuators locked.
 fn free_motions(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> String {
     let start = format!("with all motors locked {} can still", owner(mechanism));
     let Some(found) = SingularValues::new(jacobian) else {
         return format!("{start} move");
     };
     let free = found.null_space(1e-5 * jacobian.amax());
-    // The part of each coordinate that lies among the free motions.
+    // Component of each coordinate within the free motions.
     let parts: Vec<f64> = free.row_iter().map(|row| row.norm()).collect();
     if mechanism.skeleton().is_some() {
         let names = mechanism.coordinates().into_iter().zip(&parts);

@@ -1,5 +1,6 @@
-//! Errors of mechanisms in words: what is wrong, where it is written, and a way out. `actuators` has those of
-//! the robot's actuators against its motion, here are those of legs.
+//! Error messages of mechanisms: the fault, its location, and a remedy.
+//!
+//! `actuators` has the errors of the robot's actuators; this file has those of legs.
 
 mod actuators;
 mod motions;
@@ -15,7 +16,7 @@ use nalgebra::DMatrix;
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic};
 
-/// What a leg is called, and what it ends on: legs end on the platform, chains on a body.
+/// The noun for a leg or chain, and for the body that it ends on.
 struct Words {
     kind: &'static str,
     carrier: &'static str,
@@ -39,7 +40,7 @@ impl Words {
     }
 }
 
-/// A leg that is wrong in every configuration. The error stands at the leg's shape, where it is made.
+/// A leg that is defective in every configuration, reported at the leg's shape.
 pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnostic {
     let name = |joint: usize| format!("`{}`", leg.joints[joint].name.value);
     let names = |joints: &[usize]| {
@@ -116,7 +117,7 @@ pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnos
     }
 }
 
-/// How to remove a motion that a leg's joints have and its end does not.
+/// How to remove a joint motion that does not move the leg's end.
 fn loose_help(leg: &overact_description::Leg) -> &'static str {
     let shares_few_directions = match leg.end.as_ref().map(|end| &end.value) {
         Some(overact_description::End::Point { along, .. }) => along.contains(&false),
@@ -129,7 +130,7 @@ fn loose_help(leg: &overact_description::Leg) -> &'static str {
     }
 }
 
-/// A leg that does not close, or only where it is singular.
+/// A leg that does not close, or closes only in a singular configuration.
 pub(super) fn home_error(
     description: &Description,
     mechanism: &Mechanism,
@@ -188,7 +189,7 @@ fn open(
     }
 }
 
-/// A distance for people.
+/// Formats a distance with a suitable unit.
 fn length(distance: f64) -> String {
     match distance {
         d if !d.is_finite() => "any distance".to_owned(),
@@ -197,7 +198,7 @@ fn length(distance: f64) -> String {
     }
 }
 
-/// Joint positions as a description gives them.
+/// Joint positions in the format of a description.
 fn home(leg: &Leg, joints: &[f64]) -> String {
     let one = |(index, value): (usize, &f64)| {
         let joint = &leg.joints[index];
@@ -214,7 +215,7 @@ fn home(leg: &Leg, joints: &[f64]) -> String {
     format!("{{ {} }}", all.join(", "))
 }
 
-/// A leg that blocks motions of the platform: those of the twist for which its joints have no rates.
+/// A leg that blocks a twist of the platform, for which its joints have no rates.
 pub(super) fn blocked(
     description: &Description,
     mechanism: &Mechanism,

@@ -1,4 +1,4 @@
-//! Motions along and about axes in words.
+//! Text for motions along and about axes.
 
 use crate::mechanism::{Mechanism, TwistCoordinate};
 
@@ -9,7 +9,7 @@ pub(super) struct Motions {
 }
 
 impl Motions {
-    /// Those whose sizes are not negligible.
+    /// The motions whose components exceed `least`.
     pub(super) fn new(mechanism: &Mechanism, sizes: &[f64], least: f64) -> Self {
         let axis = |axis: usize| ["x", "y", "z"][axis].to_owned();
         let twist = mechanism.platform.as_ref().map(|p| p.motion.twist());
@@ -24,7 +24,7 @@ impl Motions {
         Self { along, about }
     }
 
-    /// Those of six directions, three along and three about the axes, of which a part is there.
+    /// The motions with components in six directions, three along and three about the axes.
     pub(super) fn of_directions(parts: &[f64; 6]) -> Self {
         let there = |parts: &[f64]| -> Vec<String> {
             let axes = ["x", "y", "z"].iter().zip(parts);

@@ -1,4 +1,4 @@
-//! What is said of chains that do not fit their skeleton.
+//! Errors of chains that do not fit their skeleton.
 
 use super::{assert_said, said};
 
@@ -48,7 +48,7 @@ fn a_chain_that_blocks_its_skeleton() {
     );
 }
 
-/// Of an end that shares one direction any two joints would look as if they turned about one axis.
+/// If an end shares one direction only, any two joints seem to rotate about one axis.
 #[test]
 fn a_chain_whose_end_shares_too_little() {
     let text = arm(

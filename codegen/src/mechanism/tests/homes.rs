@@ -1,12 +1,12 @@
-//! Rough homes of a leg that are as good as any other are all accepted: singular values are nearly
-//! equal at some of them, which is no defect of the leg.
+//! Rough homes of a leg that are all acceptable. At some of them singular values are nearly equal,
+//! which is no defect.
 
 use super::{assert_said, changed, said};
 use crate::cas::Stream;
 
 const HEXAPOD: &str = include_str!("../../../../cli/templates/spatial-6ups.toml");
 
-/// The hexapod whose last leg starts from these joint positions.
+/// The hexapod whose last leg has these rough joint positions.
 fn hexapod(home: [f64; 3]) -> String {
     let [cross, cylinder, rod] = home;
     let at = HEXAPOD.find("name = \"leg6\"").expect("a last leg");

@@ -1,4 +1,4 @@
-//! What is said where the legs leave other motions than those that are described.
+//! Errors of robots whose legs allow other motions than those described.
 
 use super::{PLANAR, assert_said, changed, said};
 use crate::mechanism::Motion;
@@ -9,13 +9,13 @@ use crate::mechanism::parasitic::closed;
 use nalgebra::Vector3;
 use overact_description::diagnostic::{DiagnosticKind, Source};
 
-/// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
-/// the platform the motion along z and the rotations about x and y.
+/// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They
+/// allow translation along z and rotation about x and y.
 fn three_rps(motion: &str) -> String {
     rps(motion, &[0, 120, 240])
 }
 
-/// Legs of this kind at some angles around z, deg.
+/// Such legs at some angles around z, deg.
 fn rps(motion: &str, angles: &[i32]) -> String {
     let mut text = format!(
         r#"name = "Tripod"
@@ -66,7 +66,7 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
     assert!(!said(&text).contains("mark more joints"));
 }
 
-/// The three legs with independent coordinates.
+/// The three legs with given independent coordinates.
 fn with_independent(coordinates: &str) -> String {
     let key = format!("motion = \"spatial\"\nindependent = [{coordinates}]");
     three_rps("spatial").replace("motion = \"spatial\"", &key)
@@ -118,8 +118,8 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
     );
 }
 
-/// A pose that is tilted, but not moved aside, is none that the legs allow: it is brought back onto them, and
-/// what is left there is said. The legs' planes keep it from turning about z by itself.
+/// A tilted pose without its parasitic displacement is not allowed by the legs. It is projected
+/// onto the closures before motions are counted. The legs' planes block the rotation about z.
 #[test]
 fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
     let tilted = three_rps("spatial").replace(
@@ -138,8 +138,8 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
     assert!(!said(&tilted).contains("mark more joints"));
 }
 
-/// Three legs at equal angles keep the platform from turning about z, wherever else they let it go: the last component
-/// of its quaternion stays zero. At other angles it turns.
+/// Three legs at equal angles block the rotation about z at every pose: the last component of the
+/// quaternion stays zero. At other angles it does not.
 #[test]
 fn coordinates_that_closures_keep_at_zero_are_found() {
     let still = |angles: &[i32]| {
@@ -155,8 +155,8 @@ fn coordinates_that_closures_keep_at_zero_are_found() {
     assert!(still(&[0, 100, 240]).is_empty());
 }
 
-/// The ball of each leg stays in the vertical plane of the leg's slide, n · (p + R a) = 0: three equations in the
-/// pose alone, and their derivatives n · v + (R a × n) · ω = 0, which owe nothing to the legs' joints.
+/// The ball of each leg stays in the vertical plane of its slide, n · (p + R a) = 0. The three
+/// equations and their derivatives n · v + (R a × n) · ω = 0 do not depend on the legs' joints.
 #[test]
 fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
     let tilted = three_rps("spatial").replace(
@@ -192,11 +192,11 @@ fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
             assert!(rate.abs() < 1e-9, "{rate}");
         }
     }
-    // What the test starts from is not allowed.
+    // The start is not an allowed pose.
     assert!(missed > 1e-3, "{missed}");
 }
 
-/// Three legs of three parallel axes each keep a free platform in a plane, everywhere the same.
+/// Three legs of three parallel axes each keep a free platform in a plane that does not change.
 #[test]
 fn a_platform_that_does_not_move_aside_has_a_motion() {
     let free = [
@@ -226,7 +226,7 @@ fn a_motion_that_the_legs_do_not_enforce_is_refused() {
     );
 }
 
-/// Four actuators drive the three motions that the legs leave: one torque is internal, and not three.
+/// Four actuators drive the three allowed motions: one internal torque, not three.
 #[test]
 fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
     let text = rps("fixed axis", &[0, 120, 240, 180]);

@@ -1,4 +1,4 @@
-//! Robots that are no robots: what is said of them, and that it names the culprit and a way out.
+//! Invalid robots: the error names the cause and a remedy.
 
 mod chains;
 mod homes;
@@ -13,7 +13,7 @@ const SLIDERS: &str = include_str!("../../../../robots/planar_3prr.toml");
 const DELTA: &str = include_str!("../../../../robots/delta.toml");
 const HEXAPOD: &str = include_str!("../../../../robots/hexapod.toml");
 
-/// The description up to its settings, with replacements that must all have an effect.
+/// The description up to its settings, with replacements that all have to apply.
 fn changed(text: &str, changes: &[(&str, &str)]) -> String {
     let text = text.split("\n[identification]").next().unwrap_or_default();
     changes.iter().fold(text.to_owned(), |text, (from, to)| {
@@ -22,7 +22,7 @@ fn changed(text: &str, changes: &[(&str, &str)]) -> String {
     })
 }
 
-/// What is said of a description: none of the legs' shapes is said to be wrong twice.
+/// The errors of a description; none of the legs' shapes may be reported twice.
 fn said(text: &str) -> String {
     let source = Source::new("my.toml", text);
     let description = match parse(&source) {
@@ -35,7 +35,7 @@ fn said(text: &str) -> String {
     }
 }
 
-/// The message of the only kind of error must hold all of this, and begin at the place.
+/// Asserts that the only kind of error is at `place` and contains all of `expected`.
 fn assert_said(text: &str, place: &str, expected: &[&str]) {
     let said = said(text);
     assert!(
@@ -48,7 +48,7 @@ fn assert_said(text: &str, place: &str, expected: &[&str]) {
     }
 }
 
-/// The planar robot whose last joints are as `joint` says, with homes that fit `joints` joints.
+/// The planar robot whose last joints are `joint`, with homes of `joints` joints.
 fn wrist(joint: &str, joints: usize) -> String {
     let old = "type = \"revolute\"\nd = \"l_2\"\nparameters = [\"fs\"]";
     let text = changed(PLANAR, &[(old, joint)]);
@@ -148,7 +148,7 @@ fn joints_too_few() {
             "add a passive joint",
         ],
     );
-    // A parallelogram holds the platform's orientation.
+    // A parallelogram keeps the platform's orientation.
     assert_said(
         &wrist("type = \"revolute\"\nd = \"l_2\"\ntheta = \"-q1-q2\"", 2),
         "37:1",
@@ -160,7 +160,7 @@ fn joints_too_few() {
         ("d = \"l_1\"", "d = \"l_1\"\nactuated = true"),
     ];
     assert_said(&changed(PLANAR, &spatial), "38:1", &[wanted, "3 of the 6"]);
-    // As many joints as the platform has motions, but others.
+    // As many joints as the platform has motions, but in other directions.
     let tilted = [
         ("motion = \"planar\"", "motion = \"translation\""),
         (", phi = \"0 deg\"", ""),
@@ -196,7 +196,7 @@ fn legs_that_never_reach() {
             "check `alpha`",
         ],
     );
-    // Stretched away from the platform, where no step makes the gap smaller; but there is a way.
+    // Stretched away from the platform, where no step reduces the gap; yet a solution exists.
     let away = [(
         "1 = \"129 deg\", 2 = \"103 deg\", 3 = \"-322 deg\"",
         "1 = \"0 deg\", 2 = \"0 deg\", 3 = \"-90 deg\"",
@@ -230,7 +230,7 @@ fn the_home_that_is_proposed_closes() {
     assert_eq!(said(&better), "a robot");
 }
 
-/// The planar robot whose last leg has no motor, as a shape of its own.
+/// The planar robot whose last leg has no motor and a shape of its own.
 fn one_passive_leg() -> String {
     let text = changed(PLANAR, &[]);
     let places = text.find("[[place]]").expect("placements");
@@ -294,7 +294,7 @@ fn actuators_that_do_not_move_the_platform() {
             "attach the legs at other points",
         ],
     );
-    // Turned until the distal links point at the platform's middle: singular at home, and only there.
+    // Rotated until the distal links point at the platform's centre: singular at home only.
     let turned = [
         ("phi = \"0 deg\"", "phi = \"atan2(sqrt(255), 23)\""),
         (

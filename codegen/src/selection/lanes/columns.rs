@@ -1,4 +1,4 @@
-//! Regressors in lanes: the columns of one leg, and those of what all share.
+//! Regressors in SIMD lanes: the columns of one leg, and the shared ones.
 
 use super::draft::Draft;
 use super::kept::kept_columns;
@@ -7,7 +7,7 @@ use crate::derivation::derive;
 use crate::lowering::{Gathered, Lanes};
 use overact_core::Columns;
 
-/// The regressor of a template's first leg and of what all legs share.
+/// Regressor of a template's first leg and of the shared bodies.
 pub(super) fn lanes(draft: &Draft<'_>, columns: Columns) -> Option<Lanes> {
     let selection = draft.selection();
     let parameters = match columns {

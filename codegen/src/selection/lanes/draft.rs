@@ -1,4 +1,4 @@
-//! What a program in lanes is made from, and the steps that all of them take: lowering, constants, whose each input is.
+//! Common steps of programs in lanes: lowering, constants, and the owner of each input.
 
 use super::kept::kept_columns;
 use super::outcome::{at_home, of_leg, value_of};
@@ -12,25 +12,25 @@ use crate::lowering::{
 use crate::selection::assemble::Assembler;
 use overact_core::{Columns, Function, Input};
 
-/// What a program in lanes is made from.
+/// Input of a program in lanes.
 pub(super) struct Draft<'m> {
     pub(super) assembler: &'m Assembler<'m>,
     pub(super) template: &'m Template,
     pub(super) function: Function,
     pub(super) from: MotionInput,
-    /// The function with all legs in a row.
+    /// The straight program with all legs.
     pub(super) straight: &'m Program,
 }
 
 /// A program of the template's first leg.
 pub(super) struct Lowered {
     pub(super) program: Program,
-    /// Which input has the numbers of a leg.
+    /// Index of the input with the numbers of a leg.
     array: usize,
 }
 
 impl Draft<'_> {
-    /// The robot's form, without columns of legs that are had from those of others.
+    /// The robot's selection, without columns of legs that are combinations of other legs' columns.
     pub(super) fn selection(&self) -> Selection {
         Selection {
             combined: Vec::new(),
@@ -38,7 +38,7 @@ impl Draft<'_> {
         }
     }
 
-    /// The program of what is derived of the template.
+    /// Lowers a derivation of the template.
     pub(super) fn lowered<'a>(
         &self,
         arena: &'a Arena,
@@ -61,7 +61,8 @@ impl Draft<'_> {
         Some(Lowered { program, array })
     }
 
-    /// The program in lanes: what depends on the numbers of a leg alone is a number of it.
+    /// The program in lanes; values that depend on a leg's constants only become constants
+    /// themselves.
     pub(super) fn lanes(&self, lowered: Lowered, gathered: Gathered) -> Option<Lanes> {
         let Lowered { program, array } = lowered;
         let mechanism = self.assembler.mechanism;
@@ -92,7 +93,8 @@ impl Draft<'_> {
         Some(lanes)
     }
 
-    /// Whose the elements of each input are. None if the program reads what belongs to another leg than the first.
+    /// The owner of the elements of each input. `None` if the program reads elements of a leg other
+    /// than the first.
     fn elements(&self, program: &mut Program, array: usize) -> Option<Vec<Elements>> {
         let mechanism = self.assembler.mechanism;
         let legs = mechanism.legs.len();
@@ -121,8 +123,9 @@ impl Draft<'_> {
         program.operands().all(is_own).then_some(inputs)
     }
 
-    /// Puts the first leg's elements of the input of parameters `at` into one of their own. None if the program reads those
-    /// of another leg.
+    /// Moves the first leg's elements of the parameter input `at` to an input of their own.
+    ///
+    /// `None` if the program reads those of another leg.
     fn own_parameters(
         &self,
         program: &mut Program,
@@ -147,7 +150,7 @@ impl Draft<'_> {
         (!program.operands().any(is_of_another)).then_some(elements)
     }
 
-    /// What the elements of a function's input of parameters are.
+    /// The parameters in a function's parameter input.
     fn parameters(&self, columns: Columns) -> Vec<BodyParameter> {
         let selection = self.assembler.selection;
         let chosen = match columns {
@@ -157,7 +160,7 @@ impl Draft<'_> {
         [&chosen[..], &selection.payload].concat()
     }
 
-    /// The magnitudes at home of what is guarded, in each leg.
+    /// Magnitudes of guarded values at home, for each leg.
     fn homes(&self, lanes: &Lanes) -> Option<Vec<Vec<f64>>> {
         let guards: Vec<Operand> = lanes.program.guards.iter().map(|g| g.operand).collect();
         let given = |name: &str| at_home(self.assembler, name);
@@ -170,7 +173,7 @@ impl Draft<'_> {
             .collect();
         let of_legs = of_legs?;
         let of_guard = |(at, guard): (usize, &Guard)| match guard.condition {
-            // Of which only the sign matters.
+            // Only the sign of this value matters.
             Condition::Reach { home: 0.0, .. } => vec![0.0; lanes.legs.len()],
             _ => {
                 let magnitudes = of_legs.iter().map(|values| values[at].abs());
@@ -189,7 +192,7 @@ impl Draft<'_> {
     }
 }
 
-/// What an operand of a program that has the numbers of a leg alone is, in words.
+/// Describes an operand that depends on the numbers of a leg only.
 fn said<'n>(program: &Program, operand: Operand, name: &dyn Fn(usize) -> &'n str) -> String {
     let of = |operand| said(program, operand, name);
     let inside = |operand: Operand| match operand {
@@ -223,7 +226,7 @@ const fn input_of(columns: Columns) -> Input {
     }
 }
 
-/// What all legs share fails in the first one first. In which leg another guard fails is known when it does.
+/// Assigns shared guards to the first leg; the leg of other guards is known at run time.
 fn name_guards(program: &mut Program, first: &str) {
     for guard in &mut program.guards {
         if let Condition::Reach { leg, .. }

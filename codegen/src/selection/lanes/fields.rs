@@ -1,4 +1,4 @@
-//! The numbers of a leg in which a leg of the same kind may differ, in an order of their own.
+//! The numbers by which legs of one kind may differ, in a fixed order.
 
 use crate::cas::{Angle, Number};
 use crate::mechanism::{End, Leg};
@@ -17,20 +17,20 @@ pub(super) fn numbers(leg: &mut Leg) -> Vec<&mut Number> {
     numbers
 }
 
-/// What the numbers are called, in the same order.
+/// Names of the numbers, in the same order.
 pub(super) fn names_of_numbers(leg: &Leg) -> Vec<String> {
     let along = |axis: &str, of: &str| format!("{axis} of {of}");
     names(leg, leg.end.is_some(), along, ["b", "d", "r"])
 }
 
-/// What the angles are called, in the same order.
+/// Names of the angles, in the same order.
 pub(super) fn names_of_angles(leg: &Leg) -> Vec<String> {
     let about = |axis: &str, of: &str| format!("turn of {of} about {axis}");
     let is_rigid = matches!(leg.end, Some(End::Rigid(_)));
     names(leg, is_rigid, about, ["gamma", "alpha", "theta"])
 }
 
-/// Three of the base, of the end if it has them, and of each joint.
+/// Three names for the base, for the end if it has them, and for each joint.
 fn names(
     leg: &Leg,
     has_end: bool,

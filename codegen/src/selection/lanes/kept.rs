@@ -1,11 +1,12 @@
-//! Which columns or parameters of the first leg stand for those of all.
+//! Columns and parameters of the first leg that represent those of all legs.
 
 use crate::derivation::BodyParameter;
 use crate::lowering::{Column, OfLegs};
 
-/// Which columns of a function stay, and where they and those of the other legs stand. Columns of the last legs may be
-/// missing, for an elimination keeps those of the first ones. None if the legs' columns do not follow one another at a
-/// distance of their own.
+/// The kept columns of a function, and the places of these and of the other legs' columns.
+///
+/// Columns of the last legs may be missing, since an elimination keeps those of the first ones.
+/// `None` if the legs' columns do not have a constant stride.
 pub(super) fn kept_columns(
     parameters: &[BodyParameter],
     legs: usize,

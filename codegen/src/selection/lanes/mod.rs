@@ -1,15 +1,17 @@
-//! Legs that are alike, side by side: the program of one leg, to be run in the lanes of vectors.
+//! Programs of one leg that run for several equal legs in SIMD lanes.
 //!
-//! Straight code of many equal legs is longer than an instruction cache, and the compiler finds hardly any vectors
-//! in it. So where legs differ in nothing but numbers, one of them is derived with elements of an array in the
-//! place of these numbers ([`template`]), which keeps all that the algebra knows of them: a cosine and a sine
-//! that differ from leg to leg still have squares that add up to one, and what is equal or opposite in all legs stays so
-//! ([`stands`]). Where legs are in several working modes, the signs of the roots in their closed forms are such numbers, too.
-//! The other legs are the same program with their numbers. What it gives are columns of a regressor ([`columns`]), or what a leg adds to sums from which inverse
-//! and forward dynamics follow ([`sums`]). Special values of a leg, a point on an axis for instance, bring nothing
-//! then, and nothing is shared between legs that lie symmetrically, so there are more operations than in the
-//! straight program, which interpreted robots and other languages keep. Both are compared at random states
-//! before this one is taken ([`outcome`]).
+//! Straight code of many equal legs exceeds the instruction cache, and compilers hardly vectorise
+//! it. So if legs differ by numbers only, one of them is derived with array elements in place of
+//! these numbers ([`template`]). The algebra keeps their relations ([`placeholders`]): the squares
+//! of a cosine and a sine that differ between legs still sum to one, and values that are equal or
+//! opposite in all legs stay so. If legs are in several working modes, the signs of the roots in
+//! their closed forms are such numbers, too. All legs run the same program with their own numbers.
+//!
+//! The result is columns of a regressor ([`columns`]), or contributions to sums that determine
+//! inverse and forward dynamics ([`sums`]). Special values of a leg, such as a point on an axis,
+//! save no operations then, and symmetric legs share nothing. So there are more operations than in
+//! the straight program, which interpreted robots and other languages use. Both are compared at
+//! random states before this one is accepted ([`outcome`]).
 
 mod columns;
 mod draft;
@@ -28,29 +30,31 @@ use draft::Draft;
 use overact_core::Function;
 use template::Template;
 
-/// Operations of a straight program from which its code is longer than an instruction cache of 32 kB: it has 19 bytes
-/// for each, as measured on x86-64 with regressors.
+/// Operations of a straight program above which its code exceeds an instruction cache of 32 kB.
+///
+/// An operation takes 19 bytes, as measured on x86-64 with regressors.
 const TOO_LONG: usize = 32 * 1024 / 19;
 
-/// Operations of a straight program, times legs, from which four lanes win.
+/// Operations of a straight program, times legs, above which four lanes are faster.
 const FEW: usize = 960;
 
-/// Those from which two lanes win where sums are what is computed, with four legs and more.
+/// The same above which two lanes are faster for sums, with four legs and more.
 const FEW_OF_SUMS: usize = 1440;
 
-/// Those of a mass matrix, of which two lanes lose most of what legs share.
+/// The same for a mass matrix, in which two lanes lose most of what legs share.
 const MANY_OF_MASSES: usize = 1000;
 
-/// Those of a step of forward kinematics, at whose end roots and quotients wait for each other.
+/// The same for a step of forward kinematics, which ends with dependent roots and quotients.
 const FEW_OF_STEPS: usize = 480;
 
-/// The fewest legs that are worth it.
+/// The smallest number of legs for which lanes are used.
 const LEGS: usize = 3;
 
-/// Operations of all legs with which two lanes are still worth it, in hundredths of the straight program's; and four.
+/// Largest operation counts of all legs for two and four lanes, in percent of the straight
+/// program's.
 const MOST: [usize; 2] = [125, 180];
 
-/// The program of a function in lanes, where that is the faster one.
+/// The program of a function in lanes, if it is faster.
 pub(crate) fn beside(
     assembler: &Assembler<'_>,
     function: Function,
@@ -88,11 +92,12 @@ pub(crate) fn beside(
     (is_worth_four && is_right).then_some(Lanes { pays, ..lanes })
 }
 
-/// Which lanes are faster than a straight program of so many operations. None if none are, or if the function has no legs
-/// of its own.
+/// The numbers of lanes that are faster than a straight program of so many operations.
 ///
-/// Two lanes lose what sharing between legs saves, with three legs also a half of a turn, and from joints the sines of all
-/// legs at once; four and more win nearly always. The numbers are measured, on x86-64.
+/// `None` if none is, or if the function has no legs of its own. Two lanes lose the savings of
+/// sharing between legs. With three legs they also waste half a batch and, from joints, the sines
+/// of all legs at once. Four and more lanes are nearly always faster. The numbers were measured on
+/// x86-64.
 fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -> Option<Pays> {
     let from_joints = from == MotionInput::Joints;
     let (always, with_four) = match function {
@@ -117,7 +122,7 @@ fn pays(function: Function, from: MotionInput, legs: usize, operations: usize) -
     }
 }
 
-/// Whether all guards that belong to legs are such that lanes have.
+/// Whether lanes support all guards that belong to legs.
 fn has_lanes_guards(lanes: &Lanes) -> bool {
     let of_legs = lanes.of_legs();
     let mut own = lanes.program.guards.iter();

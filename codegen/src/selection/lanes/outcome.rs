@@ -1,4 +1,4 @@
-//! Results of programs in lanes, compared with those of straight programs.
+//! Comparison of programs in lanes with straight programs.
 
 use crate::cas::InputElement;
 use crate::derivation::{BodyParameter, ROWS, SUMS};
@@ -9,17 +9,18 @@ use crate::mechanism::states::{State, random_states};
 use crate::selection::assemble::Assembler;
 use overact_core::StandardParameter;
 
-/// States at which a program in lanes is compared with the straight one.
+/// Number of states at which the programs are compared.
 const STATES: usize = 4;
 
-/// The values of an input by its name.
+/// Values of an input by its name.
 type Given<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
 
-/// A divisor of a leg vanishes at home if it is below this part of its magnitude at other states.
+/// Magnitude at home of a leg's divisor, relative to other states, below which it vanishes.
 const VANISHING: f64 = 1e-4;
 
-/// Whether no leg divides by a value that vanishes at home. The template has numbers of no leg, so a value that is zero
-/// for a leg may not have been zero for the template.
+/// Whether no leg divides by a value that vanishes at home.
+///
+/// A value that is zero for a leg may be nonzero for the template, whose numbers are of no leg.
 pub(super) fn is_regular_at_home(assembler: &Assembler<'_>, lanes: &Lanes) -> bool {
     let guards = lanes.program.guards.iter().zip(&lanes.homes);
     let of_legs = guards.filter(|(guard, _)| matches!(guard.condition, Condition::Leg { .. }));
@@ -46,7 +47,7 @@ pub(super) fn is_regular_at_home(assembler: &Assembler<'_>, lanes: &Lanes) -> bo
     })
 }
 
-/// Whether the program gives what the straight one does, at home and elsewhere.
+/// Whether the program agrees with the straight one, at home and at other states.
 pub(super) fn agrees(assembler: &Assembler<'_>, lanes: &Lanes, straight: &Program) -> bool {
     let mut states = random_states(assembler.mechanism, STATES, 5);
     let home = &assembler.mechanism.home;
@@ -76,7 +77,7 @@ fn outcome(lanes: &Lanes, given: &Given<'_>) -> Option<Vec<f64>> {
     }
 }
 
-/// Columns in their places.
+/// Puts columns in their places in the output.
 fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<Vec<f64>> {
     let width = lanes.output.shape.last().copied().unwrap_or_default();
     let mut output = vec![0.0; lanes.output.len()];
@@ -95,7 +96,7 @@ fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<
     Some(output)
 }
 
-/// What follows from the sums.
+/// The output computed from the sums.
 fn following(lanes: &Lanes, sums: &Sums, given: &Given<'_>) -> Option<Vec<f64>> {
     let added = summed(lanes, sums.count, given)?;
     let rows = rows_of(lanes, sums.count, given)?;
@@ -119,7 +120,7 @@ fn following(lanes: &Lanes, sums: &Sums, given: &Given<'_>) -> Option<Vec<f64>> 
     Some(output)
 }
 
-/// The inputs of a program that solves with what all legs have contributed.
+/// Inputs of the program that solves with the contributions of all legs.
 #[derive(Clone, Copy)]
 pub(super) struct GatheredInputs<'v> {
     /// The sums over the legs.
@@ -149,7 +150,7 @@ impl GatheredInputs<'_> {
     }
 }
 
-/// The numbers of the legs' rows that are not zero, each of all legs.
+/// Nonzero numbers of the legs' rows, each for all legs.
 pub(super) fn rows_of(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<Vec<f64>> {
     let legs = 0..lanes.legs.len();
     let all = legs.map(|leg| value(&lanes.program, &|name| of_leg(lanes, leg, name, given)));
@@ -180,13 +181,13 @@ pub(super) fn summed(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<V
     Some(sums)
 }
 
-/// The values of what is guarded in a program of sums and rows.
+/// Guarded values in a program of sums and rows.
 pub(super) fn guarded(program: &Program, inputs: GatheredInputs<'_>) -> Option<Vec<f64>> {
     let guards: Vec<Operand> = program.guards.iter().map(|g| g.operand).collect();
     value_of(program, &guards, &|name| inputs.get(name))
 }
 
-/// An input of a program in lanes, for a leg.
+/// An input of a program in lanes, for one leg.
 pub(super) fn of_leg(lanes: &Lanes, leg: usize, name: &str, given: &Given<'_>) -> Option<Vec<f64>> {
     let inputs = &lanes.program.inputs;
     let at = inputs.iter().position(|input| input.name == name)?;
@@ -231,7 +232,7 @@ fn at_state(assembler: &Assembler<'_>, state: &State, name: &str) -> Option<Vec<
     }
 }
 
-/// Parameters of bodies that have a mass, each of another one.
+/// Parameters of bodies with mass, different for each body.
 fn of_body(assembler: &Assembler<'_>, name: &str) -> Option<Vec<f64>> {
     let selection = assembler.selection;
     let chosen = match name {
@@ -251,7 +252,7 @@ fn of_body(assembler: &Assembler<'_>, name: &str) -> Option<Vec<f64>> {
     Some(all.map(number).collect())
 }
 
-/// What some operands of a program are.
+/// Values of some operands of a program.
 pub(super) fn value_of(
     program: &Program,
     operands: &[Operand],
@@ -269,7 +270,7 @@ pub(super) fn value_of(
     value(&program, given)
 }
 
-/// A program's output; inputs that are not given are one.
+/// Output of a program; missing inputs are one.
 fn value(program: &Program, given: &Given<'_>) -> Option<Vec<f64>> {
     let inputs = program.inputs.iter();
     let inputs: Vec<Vec<f64>> = inputs

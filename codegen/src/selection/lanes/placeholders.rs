@@ -1,16 +1,16 @@
-//! Placeholders for the numbers and angles in which legs differ.
+//! Placeholders for the numbers and angles by which legs differ.
 //!
-//! A placeholder is close to the first leg's number, so that the working mode stays, and otherwise unrelated to any
-//! other number. Relations that hold in every leg are kept. Two numbers that are equal or opposite in all legs share a
-//! placeholder. So do two angles whose sum or difference is the same in all legs, such as the direction of an axis and
-//! the offset that compensates it.
+//! A placeholder is close to the first leg's number, so that the working mode stays, and otherwise
+//! unrelated to other numbers. Relations that hold in every leg are kept. Two numbers that are
+//! equal or opposite in all legs share a placeholder. So do two angles whose sum or difference is
+//! the same in all legs, such as the direction of an axis and the offset that compensates it.
 
 use crate::cas::{Angle, Number, Ratio, Stream};
 
 /// A number that differs between legs.
 #[derive(Debug)]
 pub(super) struct Constant {
-    /// Its placeholder; none if it is a sign.
+    /// Its placeholder; `None` for a sign.
     pub(super) number: Option<Number>,
     /// Its value in each leg.
     pub(super) values: Vec<f64>,
@@ -79,7 +79,7 @@ impl Placeholders {
         let angle = match known {
             Some(angle) => angle,
             None => {
-                // Whole nanoradians: sums of these are exact in the field.
+                // Whole nanoradians have exact sums in the field.
                 let near = (1e6 * self.stream.number()) as i128;
                 first.plus(Angle::radians(Ratio::new(near, 1_000_000_000)?))?
             }
@@ -95,7 +95,7 @@ impl Placeholders {
         Some(angle)
     }
 
-    /// Adds a placeholder, unless it or its negative is one already.
+    /// Adds a placeholder, unless it or its negative exists.
     fn add(&mut self, number: Number, values: Vec<f64>, name: String) {
         let mut numbers = self.constants.iter().filter_map(|c| c.number);
         if !numbers
@@ -160,7 +160,8 @@ mod tests {
         assert_eq!(sum(of([75, -74]), first), degrees([90, 90])[0]);
         assert_eq!(of([7, 7]), degrees([7, 7])[0]);
         assert_eq!(placeholders.constants[1].name, "sin(gamma of `1`)");
-        // Cosine and sine of the first and of 30 degrees more; those of its negative and of 90 degrees less it are known.
+        // Cosine and sine of the first angle, and of 30° more; those of its negative and of 90°
+        // minus it are known.
         let numbers = placeholders.constants.iter().filter_map(|c| c.number);
         assert_eq!(numbers.count(), 4);
     }

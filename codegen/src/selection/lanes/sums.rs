@@ -1,4 +1,5 @@
-//! Functions of given parameters in lanes: what a leg adds to sums over all of them, and what follows from these.
+//! Functions of given parameters in lanes: a leg's contributions to sums, and the output from the
+//! sums.
 
 use super::draft::Draft;
 use super::outcome::{GatheredInputs, at_home, guarded, rows_of, summed};
@@ -7,7 +8,7 @@ use crate::derivation::{Addends, DynamicsBy, FunctionForm, LegRowLayout, Selecti
 use crate::derivation::{derive_addends, derive_of_rows, derive_of_sums};
 use crate::lowering::{Condition, Gathered, Lanes, LegRows, Program, Sums};
 
-/// The cheaper one of both ways to add up forces.
+/// The cheaper of the two ways to sum forces.
 pub(super) fn lanes(draft: &Draft<'_>) -> Option<Lanes> {
     let ways = [DynamicsBy::Bodies, DynamicsBy::Parameters].into_iter();
     let found = ways.filter_map(|dynamics| {
@@ -42,7 +43,7 @@ fn of_selection(draft: &Draft<'_>, selection: &Selection) -> Option<Lanes> {
     let lowered = draft.lowered(&arena, derived)?;
     let mut sums = Sums {
         count,
-        // Until the sums at home are known.
+        // A placeholder until the sums at home are known.
         program: lowered.program.clone(),
         rows: match (rows, by_cofactors) {
             (0, _) => LegRows::None,
@@ -63,7 +64,7 @@ fn of_selection(draft: &Draft<'_>, selection: &Selection) -> Option<Lanes> {
     Some(lanes)
 }
 
-/// The program that solves with the sums and rows of all legs, whose values at home are given.
+/// The program that solves with the sums and rows of all legs, for given values at home.
 fn following(
     draft: &Draft<'_>,
     lanes: &Lanes,

@@ -1,4 +1,4 @@
-//! One leg as a template of all legs of its kind: the numbers in which they differ are elements of an array.
+//! One leg as a template of equal legs: the numbers by which they differ are elements of an array.
 
 use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
 use super::placeholders::{Constant, Placeholders};
@@ -6,20 +6,20 @@ use crate::cas::{Angle, Arena, InputElement, Number};
 use crate::derivation::working_modes;
 use crate::mechanism::{Leg, Mechanism};
 
-/// The name of the array.
+/// Name of the array.
 pub(super) const ARRAY: &str = "of_leg";
 
 /// A robot whose first leg is the template of all legs.
 #[derive(Debug)]
 pub(super) struct Template {
-    /// The robot; where the legs differ, the first one has placeholders.
+    /// The robot; the first leg has placeholders for numbers that differ.
     pub(super) mechanism: Mechanism,
-    /// The numbers in which they differ.
+    /// The numbers that differ.
     constants: Vec<Constant>,
 }
 
 impl Template {
-    /// The template of a robot whose legs are all alike but for numbers.
+    /// The template of a robot whose legs differ by numbers only.
     pub(super) fn of(mechanism: &Mechanism) -> Option<Self> {
         let [first, others @ ..] = &mechanism.legs[..] else {
             return None;
@@ -56,7 +56,7 @@ impl Template {
         })
     }
 
-    /// How many numbers differ.
+    /// Count of the numbers that differ.
     pub(super) fn len(&self) -> usize {
         self.constants.len()
     }
@@ -71,19 +71,20 @@ impl Template {
         }
     }
 
-    /// What an element of the array is called.
+    /// Name of an element of the array.
     pub(super) fn name(&self, index: usize) -> &str {
         &self.constants[index].name
     }
 
-    /// The numbers of a leg.
+    /// Numbers of a leg.
     pub(super) fn values(&self, leg: usize) -> Vec<f64> {
         self.constants.iter().map(|c| c.values[leg]).collect()
     }
 }
 
-/// For the roots in the first leg's closed form the elements of the array that have their signs: where a leg is in another
-/// working mode, beside those of the first leg.
+/// The array elements with the signs of the roots in the first leg's closed form.
+///
+/// They exist if some leg has another working mode than the first.
 fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<InputElement>> {
     let Some(modes) = working_modes(mechanism) else {
         return Vec::new();
@@ -114,7 +115,7 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
     (0..first.len()).map(sign).collect()
 }
 
-/// The name of the template, which no leg has.
+/// Name of the template, different from those of all legs.
 fn name(legs: &[Leg]) -> String {
     let mut name = "leg".to_owned();
     while legs.iter().any(|leg| leg.name == name) {
@@ -123,7 +124,7 @@ fn name(legs: &[Leg]) -> String {
     name
 }
 
-/// What a leg is but for its name and these numbers.
+/// A leg's description without its name and these numbers.
 fn shape(leg: &Leg) -> String {
     let mut leg = leg.clone();
     leg.name.clear();

@@ -1,10 +1,10 @@
-//! The scalar equations of a leg's closure in the frames of all its joints (Paul 1981).
+//! Scalar equations of a leg's closure in the frames of all its joints (Paul 1981).
 //!
-//! Let F be the frame of a joint before its own motion. Seen from F, the point X that the leg's end
-//! has to meet is P = R_Fᵀ (X - O_F), which the joints before F decide; the end of the chain behind F
-//! is Q, which the others decide. P = Q gives three equations and |P|² = |Q|² a fourth that no turn
-//! about F's origin changes. A rigid end gives the same for the platform's axes e_i, with those of the
-//! last frame g_i, and (X - O_F) · e_i = Q · g_i.
+//! Let F be the frame of a joint before its own motion. In F, the target X of the leg's end is P =
+//! R_Fᵀ (X - O_F), a function of the joints before F. The end of the chain after F is Q, a function
+//! of the other joints. P = Q gives three equations, and |P|² = |Q|² a fourth, which is invariant
+//! under rotation about F's origin. For a rigid end the same holds for the platform's axes e_i and
+//! those of the last frame g_i, with (X - O_F) · e_i = Q · g_i.
 
 use super::super::configuration::Configuration;
 use super::super::frames::path_to_end;
@@ -15,14 +15,14 @@ use super::Task;
 use crate::cas::{Angle, CosineSine, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::mechanism::Joint;
 
-/// An orientation as prefix, then a turn about z. Turns about parallel axes add up.
+/// An orientation as a prefix and a rotation about z. Rotations about parallel axes add up.
 #[derive(Debug, Clone)]
 struct TurnedPrefix<'a> {
     prefix: Matrix3<'a>,
     turn: Direction,
 }
 
-/// A frame of the leg.
+/// A frame of the leg with its origin.
 #[derive(Debug, Clone)]
 struct Frame<'a> {
     orientation: TurnedPrefix<'a>,
@@ -42,7 +42,8 @@ impl<'a> TurnedPrefix<'a> {
         Some(self.prefix * Matrix3::rotation(2, cosine, sine))
     }
 
-    /// The orientation of a joint's frame before its own turn θ; `self` is that of the antecedent's frame.
+    /// Orientation of a joint's frame before its own turn θ; `self` is that of the antecedent's
+    /// frame.
     fn before_turn_of(&self, joint: &Joint, configuration: &Configuration<'a>) -> Option<Self> {
         let arena = configuration.arena();
         let turn = self.turn.plus(&Direction::constant(joint.gamma))?;
@@ -76,7 +77,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Expressions that vanish where the leg closes.
+/// Expressions that vanish if the leg is closed.
 pub(in crate::derivation) fn equations<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
@@ -95,7 +96,7 @@ pub(in crate::derivation) fn equations<'a>(
         let rotation = before.orientation.rotation(configuration)?;
         let arm = task.target - before.origin;
         let (end, end_axes) = chain(task, configuration, &path[at..], true)?;
-        // What the joint's own turn does not change is written without it.
+        // Quantities that the joint's own turn does not change are expressed without it.
         let (still, still_axes) = chain(task, configuration, &path[at..], false)?;
         let seen = rotation.transposed() * arm;
         equations.extend((0..3).map(|i| seen.0[i] - end.0[i]));
@@ -113,7 +114,7 @@ pub(in crate::derivation) fn equations<'a>(
     Some(equations)
 }
 
-/// The equations of an end that meets the platform's point along some axes of the base frame only.
+/// Equations of an end that meets the platform's point along some axes of the base frame only.
 fn along_base_axes<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
@@ -129,8 +130,9 @@ fn along_base_axes<'a>(
     Some(shared.iter().map(|&axis| gap.0[axis]).collect())
 }
 
-/// Origin and axes of the last frame, seen from the first joint of `path` before its motion, with or
-/// without that joint's turn.
+/// Origin and axes of the last frame, in the frame of the first joint of `path` before its motion.
+///
+/// The turn of that joint is included or not.
 fn chain<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
@@ -154,7 +156,7 @@ fn chain<'a>(
     Some((frame.origin, axes))
 }
 
-/// From a joint's antecedent to the joint before its motion.
+/// Step from a joint's antecedent to the joint before its motion.
 fn step_to<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
@@ -171,7 +173,7 @@ fn step_to<'a>(
     })
 }
 
-/// From a joint before its motion to its frame.
+/// Step from a joint before its motion to its frame.
 fn step_over<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,

@@ -1,13 +1,14 @@
-//! Inverse kinematics by rule: what a leg's closure says of its joints, without an angle.
+//! Inverse kinematics in closed form: sines, cosines and slides of a leg's joints from its closure.
 //!
-//! Two rules are tried, both on the leg's geometry and never on a robot's name. `planar` knows the
-//! two links in a plane. `peeling` takes a leg apart one joint at a time after Paul: the closure
-//! is written in the frame of every joint on the way, and of all the scalar equations that this gives
-//! (`equations`) one is looked for that holds a single unknown and is linear in its cosine and
-//! sine or quadratic in its slide. What is found makes others soluble.
+//! Two rules are tried; both depend on the leg's geometry only. `planar` solves two links in a
+//! plane. `peeling` solves a leg joint by joint after Paul. It writes the closure in the frame of
+//! every joint (`equations`), and searches a scalar equation with a single unknown. The equation
+//! has to be linear in the unknown's cosine and sine, or quadratic in its slide. Each solution
+//! makes other equations solvable.
 //!
-//! The closed forms hold square roots, whose signs are the working mode of the home configuration. Where one leg stands for
-//! others of another mode, the signs are elements of an array ([`Home::signs`](crate::mechanism::Home)).
+//! The closed forms contain square roots, whose signs are the working mode of the home
+//! configuration. If legs of different modes share code, the signs are elements of an array
+//! ([`Home::signs`](crate::mechanism::Home)).
 
 mod equations;
 mod peeling;
@@ -26,14 +27,14 @@ pub(in crate::derivation) use equations::equations;
 pub(in crate::derivation) use peeling::advance;
 pub(in crate::derivation) use polynomial::at_zero;
 
-/// A condition for the pose to be within reach: the expression must not be negative.
+/// Condition for a pose to be within reach: the radicand must not be negative.
 #[derive(Debug, Clone, Copy)]
 pub struct Reach<'a> {
     /// The radicand.
     pub radicand: Expr<'a>,
 }
 
-/// What a rule works on.
+/// Input of a rule.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a, 'm> {
     /// The graph.
@@ -44,9 +45,9 @@ pub struct Task<'a, 'm> {
     pub first_joint: usize,
     /// The home configuration, which fixes the working mode.
     pub home: &'m Home,
-    /// The point that the leg's end has to meet, in the base frame.
+    /// Target of the leg's end, in the base frame.
     pub target: Vector3<'a>,
-    /// For a rigid end, the orientation that the last frame has to have.
+    /// Required orientation of the last frame, for a rigid end.
     pub axes: Option<Matrix3<'a>>,
 }
 
@@ -75,12 +76,12 @@ impl<'a, 'm> Task<'a, 'm> {
         })
     }
 
-    /// The value at home of an expression in the pose.
+    /// Value at home of an expression in the pose.
     fn at_home(&self, expr: Expr<'a>) -> f64 {
         self.home.value(self.arena, expr)
     }
 
-    /// Names a root, and what it is with its sign where that is one of the numbers of a leg that stands for others.
+    /// Names a root, and its product with its sign if the sign is an input.
     fn name_root(&self, root: Expr<'a>, radicand: Expr<'a>, name: &str) {
         let plain = radicand.sqrt();
         let _ = plain.named(name);
@@ -89,14 +90,15 @@ impl<'a, 'm> Task<'a, 'm> {
         }
     }
 
-    /// The least size that an equation's coefficients have without cancelling: they are components of
-    /// unit vectors, lengths, or squares of lengths.
+    /// The least size of an equation's coefficients without cancellation.
+    ///
+    /// They are components of unit vectors, lengths, or squares of lengths.
     fn size(&self) -> f64 {
         let steps = self.leg.joints.iter().flat_map(|j| [j.d, j.b, j.r]);
         let end = self.leg.end.iter().flat_map(End::point);
         let lengths = steps.chain(self.leg.base.at).chain(end);
         let longest = lengths.map(|l| l.value().abs()).fold(0.0, f64::max);
-        // A leg of a nanometre is one of orientations only.
+        // A leg shorter than a nanometre consists of orientations only.
         if longest > 1e-9 {
             longest.powi(2).min(1.0)
         } else {
@@ -104,7 +106,7 @@ impl<'a, 'm> Task<'a, 'm> {
         }
     }
 
-    /// The value at home of a sum of joint angles and a constant.
+    /// Value at home of a sum of joint angles and a constant.
     fn turn_at_home(&self, turn: &Direction) -> f64 {
         let joint = |symbol: SymbolId| self.home.input(self.arena.input_element(symbol)?);
         let terms = turn.terms().iter();
@@ -114,7 +116,7 @@ impl<'a, 'm> Task<'a, 'm> {
     }
 }
 
-/// For each leg the signs at home of the roots in its closed form. `None` if a leg has none.
+/// Signs at home of the roots in each leg's closed form. `None` if a leg has no closed form.
 pub(crate) fn working_modes(mechanism: &Mechanism) -> Option<Vec<Vec<bool>>> {
     let motion = mechanism.platform.as_ref()?.motion;
     let arena = Arena::new();
@@ -128,7 +130,7 @@ pub(crate) fn working_modes(mechanism: &Mechanism) -> Option<Vec<Vec<bool>>> {
     (0..mechanism.legs.len()).map(of_leg).collect()
 }
 
-/// Learns the leg's angles and slides from the pose. `None` if no rule fits the leg.
+/// Solves the leg's angles and slides from the pose. `None` if no rule fits the leg.
 pub(crate) fn solve_leg<'a>(
     task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,

@@ -1,16 +1,16 @@
-//! A leg solved one joint at a time.
+//! Solves a leg one joint at a time.
 //!
-//! Among the closure's equations ([`equations`](super::equations)) those are kept that hold a single
-//! unknown. The cheapest kind is taken first:
+//! Among the closure's equations ([`equations`](super::equations)), those with a single unknown are
+//! used, the cheapest kind first:
 //!
 //! 1. two equations a c + b s = d in one turn, or one that is linear in a slide: no square root;
 //! 2. one equation a c + b s = d in a turn: with w² = a² + b² - d², (a² + b²) c = a d + b w and
 //!    (a² + b²) s = b d - a w;
 //! 3. an equation that is quadratic in a slide.
 //!
-//! The root's sign is the one that it has at home: w = ∂(a c + b s)/∂(turn). It can change only where
-//! the root vanishes, and there the leg is singular. An equation whose root vanishes at home already
-//! does not determine its unknown and is left alone.
+//! The root has its sign at home: w = ∂(a c + b s)/∂(turn). The sign can change only where the root
+//! vanishes, and there the leg is singular. An equation whose root vanishes at home does not
+//! determine its unknown and is not used.
 
 use super::super::configuration::{Configuration, Unknown};
 use super::equations::equations;
@@ -19,13 +19,13 @@ use super::{Reach, Task};
 use crate::cas::{CosineSine, Expr, Number, Ratio};
 use crate::mechanism::JointKind;
 
-/// A divisor or root smaller than this fraction of what it is made of counts as zero.
+/// Fraction of its terms below which a divisor or root counts as zero.
 const VANISHES: f64 = 1e-6;
-/// Coefficients below this at home, in units of a leg of one metre, are the rounding of constants that
-/// cancel: an equation of nothing else says nothing.
+/// Size at home below which coefficients are rounding errors of cancelling constants, relative to a
+/// leg of one metre. An equation with only such coefficients is void.
 const ROUNDING: f64 = 1e-11;
 
-/// How an unknown follows from the closure.
+/// Solution of an unknown from the closure.
 pub(super) enum Step<'a> {
     Pair(Linear<'a>, Linear<'a>),
     Slide(Quadratic<'a>),
@@ -34,7 +34,8 @@ pub(super) enum Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// Kinds in the order in which they are preferred, then the number of symbols and terms.
+    /// Cost for the choice among steps: preferred kinds first, then the number of symbols and
+    /// terms.
     fn cost(&self) -> (usize, usize) {
         let size = |l: &Linear<'a>| l.a.size() + l.b.size() + l.d.size();
         let quadratic = |q: &Quadratic<'a>| q.a.size() + q.b.size() + q.e.size();
@@ -47,7 +48,7 @@ impl<'a> Step<'a> {
     }
 }
 
-/// Learns the leg's angles and slides from the pose. `None` if some joint stays unknown.
+/// Solves the leg's angles and slides from the pose. `None` if some joint stays unknown.
 pub(super) fn solve<'a>(
     task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,
@@ -59,8 +60,9 @@ pub(super) fn solve<'a>(
     Some(conditions)
 }
 
-/// Learns one turn or slide more, and the condition for its root to be real; `None` if none follows
-/// from what is known.
+/// Solves one more turn or slide; returns the condition for its root to be real.
+///
+/// `None` if no equation has a single unknown.
 pub(in crate::derivation) fn advance<'a>(
     task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,
@@ -87,7 +89,7 @@ fn is_solved(task: Task<'_, '_>, configuration: &Configuration<'_>) -> bool {
     })
 }
 
-/// The best way to an unknown from those equations that hold nothing else that is unknown.
+/// The best step for an unknown, from the equations that contain no other unknown.
 fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Option<Step<'a>> {
     let arena = task.arena;
     let own = match unknown {
@@ -126,7 +128,7 @@ fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Op
     steps.into_iter().min_by_key(Step::cost)
 }
 
-/// How a slide follows from an equation, if it determines it at home.
+/// Solution of a slide from an equation, if the equation determines it at home.
 pub(super) fn slide<'a>(task: Task<'a, '_>, equation: Quadratic<'a>) -> Option<Step<'a>> {
     let home = |e: Expr<'a>| task.at_home(e);
     if equation.a.is_zero() {
@@ -168,7 +170,7 @@ fn is_regular<'a>(task: Task<'a, '_>, first: &Linear<'a>, second: &Linear<'a>) -
     is_said && (a * d - b * c).abs() > VANISHES * sizes[0] * sizes[1]
 }
 
-/// Takes the step. Returns the condition for its root to be real.
+/// Performs the step. Returns the condition for its root to be real.
 fn take<'a>(
     task: Task<'a, '_>,
     unknown: &Unknown,
@@ -211,7 +213,7 @@ fn take<'a>(
     Some(reach)
 }
 
-/// What the names of values that an unknown is found from end with: `1_leg2`, after its joints.
+/// Label of an unknown from its joints, such as `1_leg2`, for the names of intermediate values.
 fn unknown_label(
     task: Task<'_, '_>,
     configuration: &Configuration<'_>,
@@ -264,8 +266,8 @@ fn pair<'a>(first: Linear<'a>, second: Linear<'a>) -> CosineSine<'a> {
     CosineSine { cosine, sine }
 }
 
-/// Cosine and sine from one equation, with the sign that w has at home, and the radicand that must
-/// not be negative.
+/// Cosine and sine from one equation, with the sign of w at home; also returns the radicand, which
+/// must not be negative.
 fn root<'a>(
     task: Task<'a, '_>,
     Linear { a, b, d }: Linear<'a>,
@@ -277,7 +279,7 @@ fn root<'a>(
     };
     let is_positive = w_at_home > 0.0;
     if d.is_zero() {
-        // w² = a² + b²: the turn is normal to (a, b).
+        // w² = a² + b²: the turn is perpendicular to (a, b).
         let reciprocal = root(a * a + b * b, is_positive).reciprocal();
         let turned = CosineSine {
             cosine: b * reciprocal,

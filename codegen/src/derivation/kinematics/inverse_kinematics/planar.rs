@@ -1,9 +1,11 @@
-//! Two links in a plane: when the leg's joints are revolute about parallel axes and its end depends
-//! on two of them, the end lies at A + l1 e(ψ1 + β1) + l2 e(ψ2 + β2) in the plane normal to the axes. With
-//! D from A to the end, ρ² = D², a = (ρ² + l1² - l2²)/(2ρ²) and h² = l1²/ρ² - a², the elbow is
-//! A + a D ± h D⊥: one square root per leg, whose sign is the working mode of the home
-//! configuration. The unit vectors of both links are then algebraic, and a last joint that the end's
-//! position does not depend on follows from the platform's orientation.
+//! Inverse kinematics of two links in a plane.
+//!
+//! The rule applies if the leg's joints are revolute about parallel axes and its end depends on two
+//! of them. The end is A + l1 e(ψ1 + β1) + l2 e(ψ2 + β2) in the plane normal to the axes. With D
+//! from A to the end, ρ² = D², a = (ρ² + l1² - l2²)/(2ρ²) and h² = l1²/ρ² - a², the elbow is A + a
+//! D ± h D⊥. This takes one square root per leg, whose sign is the working mode of the home
+//! configuration. The unit vectors of both links are then algebraic. A last joint that does not
+//! move the end's position follows from the platform's orientation.
 
 use super::super::configuration::Configuration;
 use super::super::joint::joint_turn;
@@ -16,7 +18,7 @@ use crate::mechanism::{End, JointKind, Leg};
 /// A link in the plane.
 struct Link {
     length: Number,
-    /// The angle of the line from its joint to the next.
+    /// Angle of the line from the link's joint to the next.
     direction: Direction,
 }
 
@@ -26,7 +28,7 @@ struct LinkPair {
     second: Link,
 }
 
-/// Learns the leg's angles from the pose. `None` if the rule does not fit the leg.
+/// Solves the leg's angles from the pose. `None` if the rule does not fit the leg.
 pub(super) fn solve<'a>(
     task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,
@@ -46,7 +48,7 @@ pub(super) fn solve<'a>(
     let reach = two_links(task, &links, in_plane, configuration)?;
     let last = leg.joints.len() - 1;
     if let Some(axes) = task.axes {
-        // The last frame's orientation is the platform's: its turn is known.
+        // The last frame has the platform's orientation, so its turn is known.
         let turn = total_turn(leg, last, first_joint, configuration)?;
         let relative = prefix.transposed() * axes;
         let turned = CosineSine {
@@ -58,7 +60,7 @@ pub(super) fn solve<'a>(
     Some(vec![reach])
 }
 
-/// The two links of a leg that the rule fits.
+/// The two links of a leg, if the rule fits.
 fn planar_links(
     leg: &Leg,
     first_joint: usize,
@@ -99,7 +101,7 @@ fn planar_links(
     })
 }
 
-/// The sum of all turns about z up to joint `index`, from the plane's frame on.
+/// Sum of all turns about z up to joint `index`, relative to the plane's frame.
 fn total_turn(
     leg: &Leg,
     index: usize,
@@ -116,7 +118,7 @@ fn total_turn(
     Some(sum)
 }
 
-/// Orientation of the plane's frame in the base frame: the first joint's tilt.
+/// Orientation of the plane's frame in the base frame: the tilt of the first joint.
 fn plane<'a>(arena: &'a Arena, leg: &Leg) -> Matrix3<'a> {
     let base = constant_rotation(arena, leg.base.rotation);
     let first = &leg.joints[0];
@@ -141,7 +143,7 @@ fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
     ])
 }
 
-/// Both links' unit vectors from the end's position in the plane.
+/// Unit vectors of both links from the end's position in the plane.
 fn two_links<'a>(
     task: Task<'a, '_>,
     links: &LinkPair,
@@ -155,7 +157,7 @@ fn two_links<'a>(
     let (x, y) = (named(end.x(), "d_x"), named(end.y(), "d_y"));
     let square = named(x * x + y * y, "rho_squared");
     let reciprocal = square.reciprocal();
-    // Expressions of lengths are numbers, unless inputs replace the lengths.
+    // Expressions of lengths are numbers, unless the lengths are inputs.
     let (one, half) = (Number::ONE, Number::ratio(Ratio::new(1, 2)?));
     let over = |number: Number, divisor: Expr<'a>| match divisor.as_number() {
         Some(known) => arena.number(number / known),
@@ -166,13 +168,13 @@ fn two_links<'a>(
     let a = arena.number(half) + reciprocal * difference;
     let radicand = reciprocal * arena.constant_sum([[l1, l1, one]]) - a * a;
     let radicand = named(radicand, "h_squared");
-    // The bend from the first link to the second at home tells the elbow's side.
+    // The angle from the first link to the second at home determines the elbow's side.
     let bend = second.direction.plus(&first.direction.negative())?;
     let is_positive = task.turn_at_home(&bend).sin() > 0.0;
     let h = configuration.root(task.first_joint, task.home, radicand, is_positive);
     task.name_root(h, radicand, &format!("h_{}", task.leg.name));
     let (along, across) = ((x * a, y * a), (x * h, y * h));
-    // The elbow lies to the right of D when the second link bends to the left.
+    // The elbow is to the right of D if the second link bends to the left.
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
     let (e1x, e1y) = (named(e1x, "l1_x"), named(e1y, "l1_y"));
     let [inverse1, inverse2] = [l1, l2].map(|length| over(one, arena.number(length)));

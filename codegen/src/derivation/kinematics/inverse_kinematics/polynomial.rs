@@ -1,8 +1,8 @@
-//! What a scalar equation is as a polynomial in one unknown.
+//! A scalar equation as a polynomial in one unknown.
 //!
-//! An equation E = 0 in which cosine c and sine s of a turn are symbols is read as
-//! E = a c + b s + e + k (c² + s²), and one in a slide q as E = a q² + b q + e; the coefficients are
-//! derivatives at zero, and the form is confirmed by comparing the two as expressions.
+//! An equation E = 0 in the cosine c and sine s of a turn, as symbols, has the form E = a c + b s +
+//! e + k (c² + s²); one in a slide q has the form E = a q² + b q + e. The coefficients are
+//! derivatives at zero, and the form is confirmed by comparison of the two expressions.
 
 use super::super::configuration::Unknown;
 use crate::cas::{Arena, CosineSine, Expr, Number, Ratio, Substitution, SymbolId};
@@ -23,7 +23,8 @@ pub(super) struct Quadratic<'a> {
     pub(super) e: Expr<'a>,
 }
 
-/// Reads an equation in an unknown turn; `None` if it is of another form or does not hold the turn.
+/// Reads an equation in an unknown turn; `None` if it has another form or does not contain the
+/// turn.
 pub(super) fn linear<'a>(
     arena: &'a Arena,
     equation: Expr<'a>,
@@ -41,7 +42,8 @@ pub(super) fn linear<'a>(
     (holds && has_turn).then(|| Linear { a, b, d: -(e + k) })
 }
 
-/// Reads an equation in an unknown slide; `None` if it is of another form or does not hold the slide.
+/// Reads an equation in an unknown slide; `None` if it has another form or does not contain the
+/// slide.
 pub(super) fn quadratic<'a>(
     arena: &'a Arena,
     equation: Expr<'a>,

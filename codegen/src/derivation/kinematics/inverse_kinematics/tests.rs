@@ -1,4 +1,4 @@
-//! Which equations determine an unknown at home, and which root of them is the home's.
+//! Tests of which equations determine an unknown at home, and of the sign of the root.
 
 use super::super::configuration::Unknown;
 use super::Task;
@@ -9,7 +9,8 @@ use crate::mechanism::{Home, Mechanism, check};
 use overact_description::diagnostic::Source;
 use std::f64::consts::FRAC_PI_3;
 
-/// A robot whose longest length is below a metre, so that its legs are measured by their squares.
+/// A robot whose longest length is below a metre, so that its legs are compared by squares of
+/// lengths.
 fn five_bar() -> Mechanism {
     let source = Source::new(
         "robots/five_bar.toml",
@@ -19,7 +20,7 @@ fn five_bar() -> Mechanism {
     check(&description).expect("a right mechanism")
 }
 
-/// Looks at the first leg with its first joint at `angle`; the unknown is that joint's turn.
+/// Runs `look` on the first leg with its first joint at `angle`; the unknown is that joint's turn.
 fn with_task<T>(angle: f64, look: impl FnOnce(&Arena, Task<'_, '_>, &Unknown) -> T) -> T {
     let (arena, mechanism) = (Arena::new(), five_bar());
     let home = Home {
@@ -62,7 +63,8 @@ fn the_root_at_home_is_the_derivative_of_its_equation() {
 
 #[test]
 fn an_equation_at_its_extreme_or_of_rounding_alone_has_no_root() {
-    // (a, b) along the turn: w vanishes but for its part across, which is measured by (a, b).
+    // (a, b) along the turn: w vanishes except for its perpendicular part, which is relative to (a,
+    // b).
     let along = |length: f64, across: f64| {
         let (s, c) = FRAC_PI_3.sin_cos();
         root(

@@ -1,5 +1,7 @@
-//! Orientations as products of turns about z and constant tilts, so that the orientation of one frame
-//! in another is multiplied out between the two alone, wherever the legs start.
+//! Orientations as products of rotations about z and constant tilts.
+//!
+//! The orientation of one frame in another is multiplied out between the two alone, wherever the
+//! legs start.
 
 use super::configuration::Configuration;
 use super::joint::joint_turn;
@@ -56,8 +58,8 @@ impl Orientation {
         Some(all)
     }
 
-    /// The orientation of a frame that has the orientation `next` in this one; `None` if a constant
-    /// overflows.
+    /// Orientation of a frame that has the orientation `next` in this one; `None` on overflow of a
+    /// constant.
     #[must_use]
     pub(crate) fn followed_by(&self, next: &Self) -> Option<Self> {
         let mut parts = self.0.clone();
@@ -71,7 +73,7 @@ impl Orientation {
         Some(Self(right::merged(&parts)?))
     }
 
-    /// A constant orientation, as that of a leg's base.
+    /// A constant orientation, such as that of a leg's base.
     #[must_use]
     pub fn fixed(rotation: [Angle; 3]) -> Self {
         let is_turned = rotation.iter().any(|angle| !angle.is_zero());
@@ -98,8 +100,9 @@ impl Orientation {
         frames_on_path
     }
 
-    /// The orientation of `self` in the frame `from`; `None` if a sine or cosine does not follow from
-    /// the configuration.
+    /// Orientation of `self` in the frame `from`.
+    ///
+    /// `None` if the configuration does not determine a sine or cosine.
     #[must_use]
     pub fn relative<'a>(
         &self,
@@ -126,18 +129,22 @@ impl Orientation {
     }
 }
 
-/// The axes in which a chain's closure sees the body at its end, if they are not those of the body at its start.
-/// Orientations are those in the robot's base frame.
+/// The axes in which a chain's closure expresses its end body, if not those of the body at its
+/// start.
+///
+/// Orientations are in the robot's base frame.
 #[derive(Debug)]
 pub(crate) struct ObserverFrame {
-    /// Of the body that the chain starts from.
+    /// Orientation of the body that the chain starts from.
     pub(crate) from: Orientation,
-    /// Of the axes.
+    /// Orientation of the axes.
     pub(crate) axes: Orientation,
 }
 
-/// The numbers of the frames in whose axes a leg's closure may be written. The base alone, if the closure uses only
-/// some components of a velocity and other axes would mix them with the rest.
+/// Indices of the frames in whose axes a leg's closure may be written.
+///
+/// It is the base alone if the closure uses only some components of a velocity and other axes would
+/// mix them with the rest.
 #[must_use]
 pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
     let arena = Arena::new();
@@ -149,8 +156,7 @@ pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<us
         .map_or(vec![0], |axes| distinct(&axes, &arena, &configuration))
 }
 
-/// The numbers of those of some axes that are not others of them with names and signs of their axes exchanged,
-/// which cost the same.
+/// Indices of axes that are not signed permutations of others, which cost the same.
 pub(crate) fn distinct<'a>(
     axes: &[Orientation],
     arena: &'a Arena,
@@ -169,7 +175,8 @@ pub(crate) fn distinct<'a>(
     own
 }
 
-/// Whether a leg's closure uses all three components of each velocity or none, so that it may be written in any axes.
+/// Whether a leg's closure uses all three components of each velocity or none, so that any axes
+/// will do.
 pub(crate) fn may_use_any_axes(mechanism: &Mechanism, leg: usize) -> bool {
     let rows = mechanism.closure_rows(leg);
     [0, 1].iter().all(|&part| {
@@ -178,8 +185,10 @@ pub(crate) fn may_use_any_axes(mechanism: &Mechanism, leg: usize) -> bool {
     })
 }
 
-/// Whether a leg's closure is of the same components in all of some axes: it is of all three of a velocity or of
-/// none, or the axes turn about what is left out. The first axes are those of the components.
+/// Whether a leg's closure has the same components in all of some axes.
+///
+/// It does if it uses all three components of a velocity or none, or if the axes rotate about the
+/// components left out. The components refer to the first axes.
 pub(crate) fn keep_rows<'a>(
     mechanism: &Mechanism,
     leg: usize,
@@ -188,7 +197,7 @@ pub(crate) fn keep_rows<'a>(
     axes: &[Orientation],
 ) -> bool {
     let rows = if mechanism.is_parasitic() {
-        // Which of the shared components determine the joints is chosen in the axes themselves.
+        // The axes themselves decide which of the shared components determine the joints.
         mechanism.legs[leg].shared_components()
     } else {
         mechanism.closure_rows(leg)

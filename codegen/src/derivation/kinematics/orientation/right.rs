@@ -1,15 +1,17 @@
-//! Constant right angles between turns: where a body that carries a leg and the leg's base are tilted against each
-//! other and back, or over, the turns before and behind are about parallel axes, and one turn.
+//! Constant right angles between rotations about z.
+//!
+//! If the tilts of a leg's base and of the body that carries it cancel, or flip the axis, the
+//! rotations before and after are about parallel axes and merge into one.
 
 use super::Part;
 use crate::cas::{Angle, Direction, Ratio};
 
-/// A rotation by right angles, as its matrix.
+/// A rotation by right angles, as a matrix.
 type Right = [[i8; 3]; 3];
 
 const IDENTITY: Right = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-/// The same orientation with turns about parallel axes as one; `None` if a constant overflows.
+/// The same orientation with merged rotations about parallel axes; `None` if a constant overflows.
 pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
     let mut all: Vec<Part> = Vec::new();
     let mut at = 0;
@@ -45,7 +47,7 @@ pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
     Some(all)
 }
 
-/// Adds a part; turns that follow each other are one.
+/// Appends a part; consecutive rotations about z are merged.
 fn push(all: &mut Vec<Part>, part: Part) -> Option<()> {
     match (all.last_mut(), part) {
         (Some(Part::Turn(last)), Part::Turn(next)) => *last = last.plus(&next)?,
@@ -54,7 +56,7 @@ fn push(all: &mut Vec<Part>, part: Part) -> Option<()> {
     Some(())
 }
 
-/// A part that is a constant rotation by right angles.
+/// A part as a constant rotation by right angles.
 fn rotation(part: &Part) -> Option<Right> {
     match part {
         Part::Tilt([rx, ry, rz]) => {

@@ -1,4 +1,4 @@
-//! How the sine and cosine of each angle are had: by evaluation, or from others by the addition theorem.
+//! Sines and cosines of all angles: by evaluation, or from others by the addition theorem.
 
 mod plan;
 
@@ -9,7 +9,7 @@ use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Angle, Constant, Dag, Definition, Edge, Origin};
 use plan::{Plan, plan};
 
-/// Writes all sines and cosines out.
+/// Replaces all unplanned sines and cosines.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     dag.forget_digits();
     let turns = needed_turns(dag);
@@ -54,7 +54,7 @@ struct CosineSine {
 }
 
 impl CosineSine {
-    /// Those of the negative angle, if it `is_negative`.
+    /// Cosine and sine of the negative angle, if `is_negative`.
     const fn with_sign(self, is_negative: bool) -> Self {
         Self {
             cosine: self.cosine,
@@ -63,7 +63,7 @@ impl CosineSine {
     }
 }
 
-/// The numbers of all angles whose sine or cosine the entries need, in the order of their first use.
+/// Indices of all angles whose sine or cosine the entries need, in the order of first use.
 fn needed_turns(dag: &Dag) -> Vec<u32> {
     let mut seen = vec![false; dag.len()];
     let mut stack: Vec<usize> = dag.entries().iter().rev().map(|e| e.node()).collect();
@@ -87,7 +87,7 @@ fn needed_turns(dag: &Dag) -> Vec<u32> {
 
 struct Work<'d> {
     dag: &'d mut Dag,
-    /// The nodes of the sines and cosines, inputs, and what was added.
+    /// Nodes of the sines and cosines, inputs, and added nodes.
     known: QuickMap<Definition, usize>,
 }
 
@@ -111,7 +111,7 @@ impl<'d> Work<'d> {
         node.times(value < 0.0)
     }
 
-    /// The nodes of an angle's cosine and sine, whoever needs them.
+    /// The nodes of an angle's cosine and sine, used or not.
     fn nodes(&mut self, turn: u32) -> (usize, usize) {
         let cosine = self.node(Definition::Cosine(Angle::Unplanned(turn)));
         let sine = self.node(Definition::Sine(Angle::Unplanned(turn)));
@@ -131,12 +131,13 @@ impl<'d> Work<'d> {
         }
     }
 
-    /// The angle's cosine and sine are those of a sum.
+    /// Defines the angle's cosine and sine as those of a sum.
     fn composed(&mut self, turn: u32, by: CosineSine, products: Vec<usize>) -> CosineSine {
         let (cosine, sine) = self.nodes(turn);
         let mut together = products;
         for (node, by) in [(cosine, by.cosine), (sine, by.sine)] {
-            // The sum's own node is not used: the angle's takes its definition, for later angles as well.
+            // The sum's own node stays unused; the angle's node takes its definition, for later
+            // angles as well.
             let definition = self.dag.definition(by.node());
             self.dag.redefine(node, definition);
             self.known.insert(definition, node);
@@ -206,7 +207,7 @@ impl<'d> Work<'d> {
         }
     }
 
-    /// The addition theorem; the products are noted.
+    /// Applies the addition theorem and records the products.
     fn sum(&mut self, a: CosineSine, b: CosineSine, products: &mut Vec<usize>) -> CosineSine {
         let mut product = |a: Edge, b: Edge| {
             let product = self.node(Definition::Product(a.positive(), b.positive()));

@@ -1,26 +1,26 @@
-//! Which sines and cosines are evaluated, and which follow by the addition theorem.
+//! Plan of the sines and cosines: evaluated, or composed by the addition theorem.
 //!
-//! A sine and cosine of an input costs tens of multiplications; a sum of two known angles costs six
-//! operations. So angles with few terms are evaluated, and every angle that is the sum or difference
-//! of two known ones, or of three, is composed of them.
+//! Sine and cosine of an input cost tens of multiplications; those of a sum of two known angles cost
+//! six operations. So angles with few terms are evaluated. Every angle that is the sum or
+//! difference of two or three known ones is composed of them.
 
 use crate::cas::{Direction, Ratio, SymbolId};
 
-/// How an angle's sine and cosine are had.
+/// How an angle's sine and cosine are obtained.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Plan {
     /// By evaluation.
     Direct,
     /// As the sum of other angles and a constant.
     Sum {
-        /// The angles, places in the order of the plan, with the signs with which they enter; one at least.
+        /// The angles as indices in the order of the plan, with their signs; at least one.
         of: Vec<(usize, i64)>,
-        /// The constant part that is left.
+        /// The remaining constant.
         rest: Direction,
     },
 }
 
-/// Plans all angles of a program: the order in which they are had, by their indices, and how.
+/// Plans all angles of a program: their order, as indices, and how each is obtained.
 pub(super) fn plan(angles: &[Direction]) -> Vec<(usize, Plan)> {
     let key = |&at: &usize| {
         let angle = &angles[at];
@@ -39,28 +39,28 @@ pub(super) fn plan(angles: &[Direction]) -> Vec<(usize, Plan)> {
     planned
 }
 
-/// The fewest known angles and a constant: each takes an addition theorem more.
+/// The composition of the fewest known angles and a constant; each takes one more addition theorem.
 fn composed(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
     (1..=MOST).find_map(|count| sum_of(angle, known, count))
 }
 
-/// Most known angles that one is composed of: two addition theorems are fewer operations than a sine and cosine.
+/// Largest number of known angles: two addition theorems cost less than a sine and cosine.
 const MOST: usize = 3;
 
-/// What is left of an angle without ± a part.
+/// Remainder of an angle after subtraction of ± a part.
 fn less(angle: &Direction, part: &Direction, sign: i64) -> Option<Direction> {
     let part = part.times(Ratio::integer(sign))?;
     angle.plus(&part.negative())
 }
 
-/// What is left of an angle without each of the known ones: which one, its sign, and the rest.
+/// Remainders of an angle after subtraction of each known one: its index, sign and the remainder.
 fn rests(angle: &Direction, known: &[&Direction]) -> impl Iterator<Item = (usize, i64, Direction)> {
     let signed = known.iter().enumerate();
     let signed = signed.flat_map(|(at, part)| [1, -1].map(|sign| (at, sign, *part)));
     signed.filter_map(|(at, sign, part)| Some((at, sign, less(angle, part, sign)?)))
 }
 
-/// The angle as the sum of as many known ones, each with a sign, and a constant.
+/// The angle as the sum of `count` known ones with signs and a constant.
 fn sum_of(angle: &Direction, known: &[&Direction], count: usize) -> Option<Plan> {
     if count == 0 {
         return angle.is_constant().then(|| Plan::Sum {
@@ -69,7 +69,8 @@ fn sum_of(angle: &Direction, known: &[&Direction], count: usize) -> Option<Plan>
         });
     }
     rests(angle, known).find_map(|(first, sign, rest)| {
-        // Of three the first has to leave fewer terms: others lead nowhere, and there are many.
+        // Of three angles the first has to leave fewer terms: there are many others, and they lead
+        // nowhere.
         if count > 2 && rest.terms().len() >= angle.terms().len() {
             return None;
         }
