@@ -11,8 +11,10 @@
 //! actuators. With a_k = J_k · ρ and M_kl = J_k · J_l the products are
 //!
 //! ```text
-//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),   each halved for k = l or m = n.
+//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),
 //! ```
+//!
+//! each halved for k = l or m = n.
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
