@@ -26,7 +26,7 @@ pub enum ParameterKind {
     EncoderOffset,
     /// A length of a leg's chain: b, d or r of a joint's step (m).
     Length,
-    /// A coordinate of the point where a leg is attached to the platform, in the platform frame (m).
+    /// A coordinate of a leg's attachment point, in the platform frame (m).
     PlatformPoint,
     /// A coordinate of a leg's base point, in the base frame (m).
     BasePoint,
