@@ -143,7 +143,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     late.limit(8);
     late.limit(64);
     same(&few, &late.estimate());
-    // Pools of two kinds share none of their groups, and both obey.
+    // Kinds do not share groups, and all follow the limit.
     let mut other = records(8, 40);
     other.iter_mut().for_each(|record| record.like = 2);
     let mut both = pooled(&all, 64);
@@ -158,7 +158,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
 fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
     let all = records(2, 3);
     let told = pooled(&all, 100).estimate();
-    // Each line by itself says how its equations are weighted; then the normal equations of both.
+    // Weights from each line alone; then the normal equations of both.
     let line = |number: u16| {
         let mut sum = DMatrix::zeros(4, 4);
         let mut equations = 0;
