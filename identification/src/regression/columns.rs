@@ -276,8 +276,9 @@ impl ColumnSet {
         Ok(Self { columns })
     }
 
-    /// These columns with those of the payload once for each of these payloads, `m_payload_A` for instance; as
-    /// they are without names.
+    /// Repeats the payload's columns for each of these payloads, such as `m_payload_A`.
+    ///
+    /// Without names the columns stay unchanged.
     #[must_use]
     pub fn with_payloads(self, names: &[String]) -> Self {
         if names.is_empty() {
@@ -291,13 +292,13 @@ impl ColumnSet {
         Self { columns }
     }
 
-    /// Whether a payload of this name is among them, or one without a name.
+    /// Whether there are columns for a payload of this name, or for an unnamed one.
     pub(crate) fn has_load(&self, name: &str) -> bool {
         let mut loads = { self.columns.iter() }.filter(|column| column.origin.is_of_payload());
         loads.any(|column| column.load.as_deref().is_none_or(|own| own == name))
     }
 
-    /// Indices of the columns of each payload.
+    /// Column indices of each payload.
     #[must_use]
     pub fn loads(&self) -> Vec<Vec<usize>> {
         let mut loads: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
@@ -311,12 +312,13 @@ impl ColumnSet {
         loads.into_iter().map(|(_, all)| all).collect()
     }
 
-    /// These columns, those of Coulomb friction being zero where the speed of their joint is below the
-    /// dead band of the settings, and having the mean sign over a sampling interval where these ask
-    /// for it.
+    /// Applies the settings for reversals to the columns of Coulomb friction.
+    ///
+    /// They are zero below the dead band of the joint's speed, and can use the mean sign over a
+    /// sampling interval.
     ///
     /// # Errors
-    /// A friction parameter whose rate can't be recognised.
+    /// A friction parameter whose rate cannot be recognised.
     pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
         let reversal = Reversal::new(settings);
         if reversal.band > 0.0 || reversal.averaged {
@@ -337,7 +339,7 @@ impl ColumnSet {
                     _ => continue,
                 };
                 if let Some(other) = other {
-                    // Friction of one direction alone keeps the sign at the sample.
+                    // Friction of a single direction keeps the sign at the sample.
                     let Some(other) = of(other, column.body) else {
                         continue;
                     };
@@ -351,13 +353,13 @@ impl ColumnSet {
         Ok(self)
     }
 
-    /// The columns.
+    /// All columns.
     #[must_use]
     pub fn as_slice(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The columns' names and what they are.
+    /// Names and symbols of the columns.
     pub(crate) fn named(&self) -> Vec<(&str, StandardParameter)> {
         let columns = self.columns.iter();
         columns.map(|one| (one.name.as_str(), one.symbol)).collect()
@@ -383,9 +385,10 @@ impl ColumnSet {
             .collect()
     }
 
-    /// Evaluates the columns `picked` in case 1 at samples one sampling `interval` (s) apart: for each of
-    /// the r lines, samples x (picked + `more`), row-major, with room for more columns behind. The
-    /// payload's are zero in an unloaded run, eq. (49), and in one with another payload.
+    /// Evaluates the columns `picked` of Γ¹ at samples one sampling `interval` (s) apart.
+    ///
+    /// For each of the r lines, the result is samples × (picked + `more`), row-major, with zeros in
+    /// the additional columns. The payload's columns are zero without this payload, eq. (49).
     ///
     /// # Errors
     /// The first sample at which the model has no value.
@@ -423,7 +426,7 @@ impl ColumnSet {
         let velocities = ask(Function::JointVelocities, split)?;
         let accelerations = ask(Function::JointAccelerations, averaged)?;
         let width = picked.len() + more;
-        // Where the numbers of a row come from: places of the robot's columns, then the payload's.
+        // Sources of the numbers of a row: the robot's columns, then the payload's.
         let (mut own, mut load) = (Vec::new(), Vec::new());
         for (to, column) in columns().enumerate() {
             if !column.counts(carried) {
@@ -462,7 +465,7 @@ impl ColumnSet {
     }
 }
 
-/// The mean of the sign over an interval in which a value changes by `step`, `value` in its middle.
+/// Mean sign over an interval in which a value changes by `step`, with `value` at its centre.
 fn mean_sign(value: f64, step: f64) -> f64 {
     if value == 0.0 {
         0.0
