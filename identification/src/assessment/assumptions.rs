@@ -114,7 +114,7 @@ struct Kind {
     name: &'static str,
 }
 
-/// Constructs a [`Kind`].
+/// Constructs a kind of faults.
 const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
     Kind {
         check,

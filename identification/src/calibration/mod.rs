@@ -8,11 +8,11 @@
 //! 11, 1995; Hollerbach and Wampler, *The calibration index and taxonomy for robot kinematic
 //! calibration methods*, Int. J. Robotics Research 15, 1996).
 //!
-//! With the pose x_t of sample t, encoder offsets o and changes p of lengths, the sensors show y_t
-//! = q(x_t, p) + o + noise. The sum of squares over all samples, in units of the sensors' noise, is
-//! minimised over o, p and all x_t. The poses are eliminated sample by sample (`elimination`), as
-//! in separable least squares (Golub and Pereyra, *SIAM J. Numerical Analysis* 10, 1973) and bundle
-//! adjustment. Each sample keeps n - r equations in o and p.
+//! With the pose x_t of sample t, encoder offsets o and changes p of lengths, the sensors show
+//! y_t = q(x_t, p) + o + noise. The sum of squares over all samples, in units of the sensors'
+//! noise, is minimised over o, p and all x_t. The poses are eliminated sample by sample
+//! (`elimination`), as in separable least squares (Golub and Pereyra, *SIAM J. Numerical Analysis*
+//! 10, 1973) and bundle adjustment. Each sample keeps n - r equations in o and p.
 //!
 //! The rank of these equations shows which parameters are determined. A rigid motion of the base
 //! frame or of the platform frame changes no angle. If all sensors measure angles, a common factor

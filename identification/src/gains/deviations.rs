@@ -1,8 +1,8 @@
 //! Standard deviations of gains and parameters, to first order.
 //!
 //! The estimate is the zero of Σ_t z_t. The scores of sample t are z_t = Σ_i ([W V]_itᵀ ρ_it -
-//! [0; Ω_i g] ρ_it²/s_i²)/s_i². They have zero mean at the true values. With the derivative H = RᵀR
-//! - Λ of the sum and its covariance Z, the covariance of the estimate is H^-1 Z H^-1. Z is
+//! [0; Ω_i g] ρ_it²/s_i²)/s_i². They have zero mean at the true values. With the derivative H =
+//! RᵀR - Λ of the sum and its covariance Z, the covariance of the estimate is H^-1 Z H^-1. Z is
 //! estimated from sums over batches of successive samples. It thus allows for correlation between
 //! lines and over time, and for varying noise.
 

@@ -1,9 +1,9 @@
 //! Gains and unknown parameters from the equations W χ - V g + w = 0 with noise in V only.
 //!
 //! The residual of line i is ρ_i = V_i g - W_i χ - w_i. Let the noise of drive j's signal have the
-//! variance σ_j², independent of other drives. Then the variance of ρ_i is s_i² = gᵀ Ω_i g with Ω_i
-//! = diag(σ_j² m_ji), where m_ji is the mean of J_ji². Least squares would reduce V g to reduce its
-//! noise. The estimate instead minimises
+//! variance σ_j², independent of other drives. Then the variance of ρ_i is s_i² = gᵀ Ω_i g with
+//! Ω_i = diag(σ_j² m_ji), where m_ji is the mean of J_ji². Least squares would reduce V g to reduce
+//! its noise. The estimate instead minimises
 //!
 //! ```text
 //! Σ_i ||ρ_i||² / (gᵀ Ω_i g).

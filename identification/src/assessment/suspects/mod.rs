@@ -2,8 +2,8 @@
 //!
 //! A hypothesis has one unknown size δ: torques are delayed by δ seconds, the gain of a drive has
 //! the relative error δ, a joint has a spring of stiffness δ. To first order it adds a column z δ
-//! to Y = W χ. Wald's test decides whether δ is zero. With the part of z outside the columns W, z⊥
-//! = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and the residual ρ,
+//! to Y = W χ. Wald's test decides whether δ is zero. With the part of z outside the columns W,
+//! z⊥ = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and the residual ρ,
 //!
 //! ```text
 //! δ = z⊥ᵀ ρ/(z⊥ᵀ z⊥),   χ is off by B δ.
