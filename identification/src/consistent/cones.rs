@@ -1,9 +1,9 @@
 //! Constraints of the unknowns: cones with their multipliers.
 //!
 //! On the central path of weight μ, the multiplier of a body's pseudo-inertia P is Z = μ P^-1. That
-//! of a distance s from a bound is z = μ/s. A step dP = G U Gᵀ uses the Nesterov-Todd scaling, in
-//! which P and Z become the same diagonal matrix, G^-1 P G^-T = Gᵀ Z G = Λ (Nesterov, Todd 1997).
-//! The curvature is then ½ |U|², and the scaled multiplier changes by μ Λ^-1 - Λ - U.
+//! of a distance s from a bound is z = μ/s. A step dP = G U Gᵀ uses the Nesterov-Todd scaling: P
+//! and Z become the same diagonal matrix, G^-1 P G^-T = Gᵀ Z G = Λ (Nesterov, Todd 1997). The
+//! curvature is then ½ |U|², and the scaled multiplier changes by μ Λ^-1 - Λ - U.
 //!
 //! Unlike the curvature of the barrier alone, this one knows the active constraints. Reducing μ by
 //! a factor of ten needs one or two steps, and no nearly singular matrix is inverted.

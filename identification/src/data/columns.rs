@@ -1,7 +1,7 @@
 //! Finds the columns of all files of a run by the names of a mapping.
 //!
-//! A column is named by its name, by its number through all files (`$1` is the first one of the
-//! first file), or by `file2.NAME` if several files have the name.
+//! A column is named by its name, or by its number through all files: `$1` is the first one of the
+//! first file. If several files have the name, it is `file2.NAME`.
 
 use super::{
     expression::Expression,

@@ -1,10 +1,12 @@
 //! Design of Butterworth and Chebyshev type I low-pass filters as second-order sections.
 //!
-//! The analogue prototype of order n with a cutoff of 1 rad/s has the poles
-//! -sinh(μ) sin θ_k ± i cosh(μ) cos θ_k, θ_k = π (2k + 1)/(2n), with sinh(μ n) = 1/ε for a ripple
-//! of 10 log10(1 + ε²) dB; for Butterworth both hyperbolic factors are 1. The bilinear transform
-//! with prewarping, t = tan(π f_c / f_m), maps a pole p to z = (1 + p t)/(1 - p t) and all zeros
-//! to -1. A pair of poles makes the section (1 + z^-1)² / (1 - 2 Re(z) z^-1 + |z|² z^-2).
+//! The analogue prototype of order n with a cutoff of 1 rad/s has the poles -sinh(μ) sin θ_k ± i
+//! cosh(μ) cos θ_k with θ_k = π (2k + 1)/(2n). For a ripple of 10 log10(1 + ε²) dB, sinh(μ n) =
+//! 1/ε; for Butterworth both hyperbolic factors are 1.
+//!
+//! The bilinear transform with prewarping, t = tan(π f_c/f_m), maps a pole p to z = (1 + p t)/(1 -
+//! p t), and all zeros to -1. A pair of poles gives the section (1 + z^-1)²/(1 - 2 Re(z) z^-1 +
+//! |z|² z^-2).
 
 use overact::Code;
 use std::f64::consts::PI;

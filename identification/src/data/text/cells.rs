@@ -2,7 +2,7 @@
 
 use memchr::memchr;
 
-/// Whether a byte is a blank beside a number in its cell.
+/// Whether a byte is a blank next to a number in its cell.
 fn is_blank(byte: u8) -> bool {
     byte.is_ascii_whitespace()
 }
